@@ -37,6 +37,10 @@ struct SystemArrays {
       *face;    // outward normals n and levels c, n s <= c inside; s from -1/2 to 1/2 along the edges of the cell, (F, 4)
 };
 
+// Asked where the centre of the first object is in a cell of the second one, which has no faces: whether it is below the surface,
+// beyond which cells reach.
+using IsBelow = int (*)(int, int);
+
 // The same objects with their present positions.
 struct Objects : SystemArrays {
   const double *x;    // (N, 3)
@@ -109,11 +113,13 @@ long long sunk(const Objects &o, int a, int b, const Box &both)
   return count;
 }
 
+bool has_faces(const Objects &o, int m) { return o.faces[2 * m] < o.faces[2 * m + 1]; }
+
 // Whether a point in a cell of an object lies behind all of the object's faces, if it has any.
 bool behind_faces(const Objects &o, int m, long long c, const Vec3 &point)
 {
   const long long begin = o.faces[2 * m], end = o.faces[2 * m + 1];
-  if (begin == end) return true;
+  if (!has_faces(o, m)) return true;
   const Vec3 d = point - o.middle(c);
   const Edges e = edges(o.corner + 8 * c, o.x);    // four times as long
   const Vec3 vw = cross(e.v, e.w), wu = cross(e.w, e.u), uv = cross(e.u, e.v);
@@ -162,7 +168,7 @@ bool may_be_inside(const Objects &o, int a, int b)
 }
 
 // The pair, among n objects, with the most points of one in the other; returns the number of these points.
-long long deepest_pair(const Objects &o, int n, const int *objects, int *pair)
+long long deepest_pair(const Objects &o, int n, const int *objects, IsBelow is_below, int *pair)
 {
   std::vector<Box> boxes;
   for (int k = 0; k < n; ++k) boxes.push_back(box_of(o, objects[k]));
@@ -172,7 +178,8 @@ long long deepest_pair(const Objects &o, int n, const int *objects, int *pair)
     if ((o.still[a] && o.still[b]) || may_be_inside(o, a, b)) continue;
     const Box both = intersection(boxes[first], boxes[second]);
     for (const auto &[in, out] : {std::pair{a, b}, std::pair{b, a}}) {
-      const long long found = sunk(o, in, out, both) + centre_inside(o, in, out, both);
+      const bool centre = centre_inside(o, in, out, both) && (has_faces(o, out) || is_below(in, out));
+      const long long found = sunk(o, in, out, both) + centre;
       if (found <= most) continue;
       most = found;
       pair[0] = in;
@@ -258,7 +265,8 @@ MDANIM_EXPORT void mdanim_largest_components(const SystemArrays *model, int n, c
 // outermost layer of cells of the other, or the centre of one in the body of the other. Writes the object that is inside, and the
 // other, into `pair` and returns the number of its points that are inside; 0 where there is no such pair, -1 without memory.
 // Pairs of objects that never move are skipped, and those that may be in each other.
-MDANIM_EXPORT long long mdanim_sunk(const SystemArrays *model, int n, const int *objects, const double *x, int *pair)
+MDANIM_EXPORT long long mdanim_sunk(const SystemArrays *model, int n, const int *objects, const double *x, IsBelow is_below,
+                                    int *pair)
 {
-  return guarded(-1LL, [=] { return deepest_pair({*model, x}, n, objects, pair); });
+  return guarded(-1LL, [=] { return deepest_pair({*model, x}, n, objects, is_below, pair); });
 }

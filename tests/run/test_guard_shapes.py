@@ -61,6 +61,25 @@ def test_what_touches_a_round_side_is_not_in_it(prepared, a, b, way, apart, turn
     assert before is None and set(after or ()) == {0, 1}
 
 
+def test_a_board_at_a_ball_of_few_cells_is_not_in_it(prepared):
+    """Cells of the ball reach 3.7 cm beyond it in this direction, and the board is 4 cm thick: it rose below a ball that floats,
+    and its run was stopped."""
+    way = np.array([1.0, 1.0, 2.0]) / 6**0.5
+    at = (0.172 * way).tolist()
+    text = f"""object ball {{ shape sphere 15 cm  density 60  elasticity 50 kPa  position (0, 0, 0) m }}
+    object board {{ shape box (60, 20, 4) cm  density 700  elasticity rigid  position ({at[0]}, {at[1]}, {at[2]}) m
+      orientation axis (-1, 1, 0) angle 35.26438968 deg }}
+    control {{ time 0.1 s  resolution 7.5 cm }}
+    """
+    system = prepared(text).system
+    x, geometry = system.position.copy(), Geometry(system)
+    found = []
+    for sunk in (0.0, 0.03, 0.06):
+        x[system.first[1] :] = system.position[system.first[1] :] - sunk * way
+        found.append(geometry.sunk(x))
+    assert found == [None, None, (1, 0)]
+
+
 def test_wedges_on_each_other(prepared, wedge):
     """Their centres are a third of an edge apart in the cube that both fill; each is in the box around the other."""
     at = np.array([0.1 / 3, 0.0, 0.1 / 3]) * 1.001

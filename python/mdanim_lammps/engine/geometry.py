@@ -35,6 +35,9 @@ class _Model(ctypes.Structure):
     ]
 
 
+_IsBelow = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int, ctypes.c_int)
+
+
 @dataclass(frozen=True)
 class Geometry:
     """Questions about the positions of a system's particles; x and v are (N, 3), in tag order [m, m/s].
@@ -83,14 +86,24 @@ class Geometry:
         """Two solids of which the first is inside the second, deeper than contact ever lets it; None where there are none.
 
         Boundary particles of the first are below the outermost layer of cells of the second, but not those that stand out of the
-        first one's drawn surface; or the centre of the first is in the body of both, which of a rigid one with a single cell
-        (model/faces.py) or of one without cells (engine/hosts.py) is its shape. Solids that are held entirely may be in each
-        other. Raises MemoryError.
+        first one's drawn surface; or the centre of the first is in cells of both, and in the shape of the second (model/faces.py,
+        engine/hosts.py). Solids that are held entirely may be in each other. Raises MemoryError, mesh.MeshError.
         """
         library, model, _ = self._own
         count, which = self._which(solids)
         pair = np.zeros(2, np.int32)
-        found = library.mdanim_sunk(model, count, _address(which), _address(x), _address(pair))
+        faults: list[Exception] = []
+
+        def is_below(guest: int, host: int) -> int:
+            try:
+                return int(self._hosts.holds_centre(x, guest, host))
+            except Exception as fault:  # none passes through C
+                faults.append(fault)
+                return 0
+
+        found = library.mdanim_sunk(model, count, _address(which), _address(x), _IsBelow(is_below), _address(pair))
+        if faults:
+            raise faults[0]
         if found < 0:
             raise MemoryError
         return (int(pair[0]), int(pair[1])) if found else self._hosts.sunk(x, solids)
@@ -147,7 +160,7 @@ def _library() -> ctypes.CDLL:
         (library.mdanim_largest_components, None, [model, count, array, array, array]),
         (library.mdanim_not_finite, number, [number, array, array]),
         (library.mdanim_inverted, number, [number, array, array, array]),
-        (library.mdanim_sunk, number, [model, count, array, array, array]),
+        (library.mdanim_sunk, number, [model, count, array, array, _IsBelow, array]),
     ):
         function.restype, function.argtypes = result, arguments
     return library

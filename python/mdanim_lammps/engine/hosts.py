@@ -21,6 +21,9 @@ object: no blow goes as deep."""
 IN_CELL, AT_SURFACE = 0.75, 0.5
 """Cells from the middle of the nearest cell within which a place is in a body that deforms; and from its box, within which no
 place is looked at."""
+YIELDS = 0.25
+"""Depth of a centre in a body that deforms, in cells of that, to which contact may let it: as far as the surface yields to a
+stress that folds cells (docs/physics-contact.md)."""
 BOX = [0, 1, 2, 4]
 """The lower corner of a box, and the ends of its edges there."""
 
@@ -80,6 +83,16 @@ class Hosts:
                 return firm, soft
         return None
 
+    def holds_centre(self, x: np.ndarray, guest: int, host: int) -> bool:
+        """Whether the centre of mass of one solid is in another one that has cells, deeper than contact lets it: the cells of a
+        round body reach beyond its surface, by more than the thickness of a board."""
+        system = self.system
+        of_guest = slice(system.first[guest], system.first[guest + 1])
+        centre = system.mass[of_guest] @ x[of_guest] / system.mass[of_guest].sum()
+        if system.frames[system.contact_kind[host]].corners is None:
+            return self._below(x, host, centre[None], 0.0 if self.whole[host] else YIELDS)
+        return bool(self._depth(host, self._through_box(x, host, centre[None]))[0] > 0.0)
+
     def _meeting(
         self, x: np.ndarray, hosts: np.ndarray, guests: np.ndarray, solids: np.ndarray | None
     ) -> Iterator[tuple[int, int]]:
@@ -108,8 +121,7 @@ class Hosts:
         points = points[((points > corner.min(axis=0)) & (points < corner.max(axis=0))).all(axis=1)]
         if not len(points):
             return False
-        own = _own_box(frame)
-        points = own[0] + (points - corner[0]) @ np.linalg.solve(corner[BOX[1:]] - corner[0], own[1:] - own[0])
+        points = self._through_box(x, host, points)
         if isinstance(frame.shape, Mesh):  # few are in it, and only these are asked for exactly
             surface = self._surface(frame.shape)
             points = points[mesh.quick_depth(surface)(points) > depth]
@@ -118,19 +130,23 @@ class Hosts:
 
     def _is_pierced(self, x: np.ndarray, firm: int, soft: int) -> bool:
         system = self.system
-        corner, cells = x[system.first[firm] : system.first[firm + 1]], slice(*self.first_cell[soft : soft + 2])
+        corner, h = x[system.first[firm] :][BOX], float(np.cbrt(system.cell_volume[soft]))
         frame, own = system.frames[system.contact_kind[firm]], _own_box(system.frames[system.contact_kind[firm]])
-        body, h = system.frames[system.contact_kind[soft]], float(np.cbrt(system.cell_volume[soft]))
         if isinstance(frame.shape, Mesh | PieceShape) and frame.cells.filled.size == 1:
             return False  # only its features touch
         at = frame.cells.low + frame.contact.at * frame.cells.edge
-        points = corner[0] + (at - own[0]) @ np.linalg.solve(own[1:] - own[0], corner[BOX[1:]] - corner[0])
+        points = corner[0] + (at - own[0]) @ np.linalg.solve(own[1:] - own[0], corner[1:] - corner[0])
         around = x[system.first[soft] : system.first[soft + 1]]
         low, high = around.min(axis=0) + AT_SURFACE * h, around.max(axis=0) - AT_SURFACE * h
         points = points[((points > low) & (points < high)).all(axis=1)]
         if not len(points):
             return False
-        place = x[system.hexahedron[cells]]
+        return self._below(x, soft, points, 1.0)
+
+    def _below(self, x: np.ndarray, m: int, points: np.ndarray, deep: float) -> bool:
+        """Whether one of some points [m], shape (K, 3), is deeper in a solid, as that was at the start, than so many cells."""
+        system, body = self.system, self.system.frames[self.system.contact_kind[m]]
+        place = x[system.hexahedron[slice(*self.first_cell[m : m + 2])]]
         middle = place.mean(axis=1)
         near = Nearest(middle)(points)[1]
         of = np.stack([place[near][:, ends].mean(axis=1) for ends in UPPER], axis=1) - middle[near][:, None]
@@ -138,7 +154,17 @@ class Hosts:
         inside = (np.abs(within) <= IN_CELL).all(axis=1)
         number = np.argwhere(body.cells.filled)[near[inside], ::-1]
         rest = body.cells.low + (number + 0.5 + within[inside]) * body.cells.edge
-        return bool((shapes.depth(body.shape, rest) > h).any())
+        return bool((self._depth(m, rest) > deep * np.cbrt(system.cell_volume[m])).any())
+
+    def _through_box(self, x: np.ndarray, m: int, points: np.ndarray) -> np.ndarray:
+        """Places of points [m], shape (K, 3), in the own frame of a solid that is corners of a box."""
+        corner, own = x[self.system.first[m] :][BOX], _own_box(self.system.frames[self.system.contact_kind[m]])
+        return own[0] + (points - corner[0]) @ np.linalg.solve(corner[1:] - corner[0], own[1:] - own[0])
+
+    def _depth(self, m: int, places: np.ndarray) -> np.ndarray:
+        """Depths of places in the own frame of a solid below its surface [m], shape (K,)."""
+        shape = self.system.frames[self.system.contact_kind[m]].shape
+        return mesh.depth(self._surface(shape), places) if isinstance(shape, Mesh) else shapes.depth(shape, places)
 
     def _surface(self, shape: Mesh) -> mesh.Triangles:
         """The surface of a mesh, whose file may be gone since the start."""
