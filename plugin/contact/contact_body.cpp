@@ -61,6 +61,19 @@ static bool normals_differ(const std::vector<SurfacePoint> &surface, PointKind k
   return true;
 }
 
+// An ellipsoid around a round surface, with the proportions of a box around the body.
+static Ellipsoid ellipsoid_around(const std::vector<SurfacePoint> &surface, const Vec3 &low, const Vec3 &high)
+{
+  constexpr double BETWEEN = 0.1;    // cells that a round surface extends beyond its points, at most
+  const Vec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
+  double square = 0.0;
+  for (const SurfacePoint &point : surface) {
+    const Vec3 from = point.at - middle, v = {from.x / half.x, from.y / half.y, from.z / half.z};
+    square = std::max(square, dot(v, v));
+  }
+  return {middle, (std::sqrt(square) + BETWEEN / std::min({half.x, half.y, half.z})) * half};
+}
+
 ContactBody::ContactBody(const ContactBodyArrays &given)
 {
   need(given.particles > 0 && given.points >= 0, "it has no particles, or less than no points");
@@ -124,7 +137,8 @@ ContactBody::ContactBody(const ContactBodyArrays &given)
   take_open_parts(given);
   find_carriers();
   sort_points();
-  round = !is_cuboid() && !is_line() && normals_differ(surface, PointKind::DENSE) && normals_differ(surface, PointKind::FINE);
+  if (!is_cuboid() && !is_line() && normals_differ(surface, PointKind::DENSE) && normals_differ(surface, PointKind::FINE))
+    around = ellipsoid_around(surface, low, high);
 }
 
 void ContactBody::add_point(const SurfacePoint &point)

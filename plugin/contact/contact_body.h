@@ -34,6 +34,11 @@ struct SurfacePoint {
   PointKind kind;
 };
 
+// Along the axes of a grid, X.
+struct Ellipsoid {
+  Vec3 middle, half;    // half of its axes
+};
+
 // The points that a cell carries.
 struct PointCell {
   int place;                // of its low corner in the grid
@@ -93,7 +98,8 @@ class ContactBody {
   // A line of round particles touches others with its points, and is never a host.
   bool is_line() const { return radius_of_points > 0.0; }
   // Curved everywhere, as a ball: no two of its points have one normal, so a plane meets them one after the other.
-  bool is_round() const { return round; }
+  bool is_round() const { return around.has_value(); }
+  const std::optional<Ellipsoid> &ellipsoid() const { return around; }    // around the surface of a round body
   double radius() const { return radius_of_points; }    // of the surface around each point [m]; 0 where points lie on the surface
   double hardness() const { return hardness_of_line; }                // of a line against other bodies, over that by its material
   const std::optional<RigidFrame> &frame() const { return rigid; }    // none of a body that deforms
@@ -155,6 +161,8 @@ class ContactBody {
   int layer() const { return (cells[0] + 1) * (cells[1] + 1); }
   int places() const { return layer() * (cells[2] + 1); }
   int place(int i, int j, int k) const { return i + row() * j + layer() * k; }
+  Vec3 grid_place(int place) const
+  { return {1.0 * (place % row()), 1.0 * (place % layer() / row()), 1.0 * (place / layer())}; }    // X
   // Places of particles that contact knows: those of the grid, or those of the frame; and that of a particle, -1 for none.
   int slots() const { return rigid ? RigidFrame::PARTICLES : places(); }
   int slot_of(int node) const;
@@ -196,7 +204,7 @@ class ContactBody {
   std::vector<char> is_carrier;    // of particles
   bool at_particles = true;        // each point
   bool has_fine = false;           // points
-  bool round = false;
+  std::optional<Ellipsoid> around;
   double stands_out = 0.0, lever = 1.0, radius_of_points = 0.0, hardness_of_line = 1.0;
   std::vector<PointCarrier> sharers;    // three of each point between particles of a line
   std::vector<OpenPart> open_parts;     // sides without an open part act everywhere

@@ -145,6 +145,16 @@ void ContactObject::find_host_slots()
     if (torn->is_at_tear(static_cast<int>(at))) slot_of_host[at] = -1;
 }
 
+void ContactObject::find_outline(const PaddedVec3 *place)
+{
+  outline.forget();
+  if (!is_host || !body->is_round() || is_rigid() || first_slot == last_slot) return;
+  std::vector<Vec3> grid(last_slot - first_slot);
+  for (std::size_t at = 0; at < slot.size(); ++at)
+    if (slot[at] >= 0) grid[slot[at] - first_slot] = body->grid_place(static_cast<int>(at));
+  outline.begin(*body, grid, place + first_slot);
+}
+
 // Volume of a cell, by the means of its edges; more than any where it is not here.
 static double volume_of_cell(const int *slots, int row, int layer, const PaddedVec3 *place)
 {
@@ -168,7 +178,7 @@ void ContactObject::find_crushed(const PaddedVec3 *place)
 {
   constexpr double LEAST = 0.5, CALM = 0.8;    // volumes of cells: not crushed, and not soon without a push
   constexpr double CHANGE = 12.0;              // of a volume over that of places, in cells, at most
-  if (slot.empty() || is_rigid() || body->is_line() || (is_calm && !is_pushed) || (unchecked -= stir) >= 0.0) return;
+  if (!is_host || is_rigid() || body->is_line() || (is_calm && !is_pushed) || (unchecked -= stir) >= 0.0) return;
   const double h = body->spacing();
   double least = 1.0;
   for (int k = 0; k < body->count(2); ++k)

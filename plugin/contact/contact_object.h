@@ -5,6 +5,7 @@
 
 #include "contact/contact_body.h"
 #include "contact/material_map.h"
+#include "contact/outline.h"
 #include "contact/padded_vec3.h"
 #include "geometry/zone.h"
 
@@ -83,15 +84,19 @@ struct ContactObject {
   Vec3 way{};                 // mean displacement of its particles, or that of the middle of a rigid body, in this step
   double stir = 0.0;          // the largest displacement of a point relative to that in this step, or more
   Vec3 usual{};               // that mean in the last step in which it could move
+  bool is_host = false;       // another object may touch it until lists are made again
   bool is_pushed = false;     // by contacts, in the last step
   bool is_crushed = false;    // some cell is: a place in space may then be in several cells
   bool is_calm = false;       // no cell is soon, unless the object is pushed
   double unchecked = 0.0;     // how far its points may go until that is found anew [m]
+  Outline outline{};
   std::shared_ptr<const TornBody> torn{};    // null where it is whole
   std::vector<int> slot_of_host{};           // of a torn object: `slot` without particles at tears
 
   // Sets `way` to the mean displacement of its particles, and `stir` by the largest one relative to it, or more.
   void has_moved(const Vec3 &mean, double most) { way = mean, stir = body->leverage() * most; }
+  // To be called when it has new lists: the places of its particles then.
+  void find_outline(const PaddedVec3 *place);
   // To be called when it has moved.
   void find_crushed(const PaddedVec3 *place);
 

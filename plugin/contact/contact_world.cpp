@@ -184,7 +184,8 @@ void ContactWorld::place_rigid(const std::vector<Vec3> &frames, std::vector<Box>
 
 void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coordinates &places)
 {
-  for (ContactObject &one : all) clear_forces(one, arrays);
+  for (ContactObject &one : all) clear_forces(one, arrays), one.is_host = false;
+  for (const NearObjects::NearPair &pair : near.pairs()) all[pair.a].is_host = all[pair.b].is_host = true;
   arrays.renew(particles.size());
   for (std::size_t slot = 0; slot < particles.size(); ++slot) arrays.place()[slot].value = place(places, slot);
   const PaddedVec3 *const last = has_before ? arrays.place_before_of_old_slots() : arrays.place_of_old_slots();
@@ -204,6 +205,7 @@ void ContactWorld::list(const std::vector<ContactParticle> &particles, const Coo
         arrays.place_before()[slot] = was_here ? last[slot_before[at]] : arrays.place()[slot];
         if (was_here) changes.push_back(arrays.place()[slot].value - arrays.place_before()[slot].value);
       }
+      one.find_outline(arrays.place());
       one.find_host_slots();
       one.is_calm = false, one.unchecked = -1.0;              // its cells that are here may be others
       if (!one.is_rigid()) tell_mean_motion(one, changes);    // else it has been placed
@@ -311,7 +313,7 @@ std::size_t ContactWorld::bytes_of_particles() const
 {
   std::size_t sum = arrays.bytes();
   for (const ContactObject &one : all)
-    sum += sizeof one + one.slot.capacity() * sizeof(int) + (one.outer ? one.outer->bytes() : 0);
+    sum += sizeof one + one.slot.capacity() * sizeof(int) + (one.outer ? one.outer->bytes() : 0) + one.outline.bytes();
   return sum;
 }
 

@@ -30,6 +30,7 @@ class LatticeField : public ObjectField {
   bool is_surely_apart(std::size_t q, const Vec3 &x, const Moment &at, PointTrack &track, Verdict &verdict) const;
   Verdict sight(std::size_t q, const Moment &at, const ContactArrays &arrays, PointTrack &track, Vec3 &X) const;
   bool is_near(std::size_t q, const Moment &at, const ContactArrays &arrays, Verdict &verdict);
+  bool is_beside_outline(std::size_t q, const ContactArrays &arrays);
   bool look_closely(std::size_t q, const ContactArrays &arrays, bool may_begin);
   void put_off(std::size_t q, double slack);
   bool look_at(std::size_t q, const ContactArrays &arrays, bool may_begin) override;

@@ -14,7 +14,8 @@ namespace mdanim {
 
 static constexpr double JUMP = 0.25;    // cells that X may jump between cells of a round host
 static constexpr int MOST_GUESSES = 3;
-static constexpr std::array<int, 3> NOWHERE = {-1, -1, -1};
+static constexpr double WORTH = 0.1;    // cells that a point is put off by without a look, at least
+static constexpr std::array<int, 3> NOWHERE = {-1, -1, -1}, OUTSIDE = {-2, -2, -2};    // of the outline, and not looked at
 
 static Vec3 middle_of(const std::array<int, 3> &cell) { return {cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}; }
 
@@ -109,6 +110,16 @@ bool LatticeField::is_near(std::size_t q, const Moment &at, const ContactArrays 
   return true;
 }
 
+// Puts a point off that is far from all of the host's surface, whatever is known of it.
+bool LatticeField::is_beside_outline(std::size_t q, const ContactArrays &arrays)
+{
+  const double away = host->outline.away(owner->place_of(near[q], arrays.place())) - owner->body->radius();
+  if (!(away > WORTH * host->body->spacing())) return false;
+  wake.set(q, budget + away);
+  if (known[q].cell[0] < 0) known[q].cell = OUTSIDE;
+  return true;
+}
+
 // Until there may have been a motion that begins a contact. In another cell the depth may be different.
 void LatticeField::put_off(std::size_t q, double slack)
 {
@@ -180,6 +191,7 @@ void LatticeField::look_at_all(const std::vector<std::size_t> &points, const Con
   if (!arrays.kernels || host->is_crushed || host->body->has_covers() || owner->torn)
     return FieldOf::look_at_all(points, arrays, batches);
   for (const std::size_t q : points) {
+    if (is_beside_outline(q, arrays)) continue;
     ++looks;
     Verdict verdict;
     if (!is_near(q, arrays.now(), arrays, verdict)) {

@@ -41,6 +41,7 @@ inline void tell_motion(ContactObject &one, const ContactKernels &kernels, MoveT
   }
   one.has_moved(moved.mean, std::sqrt(moved.square) + other());
   if (!is_counted) one.usual = one.way;
+  one.outline.follow(one.way, one.stir, task.now + one.first_slot);
 }
 
 }    // namespace mdanim

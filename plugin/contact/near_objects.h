@@ -48,7 +48,7 @@ class NearObjects {
   bool none() const { return near_pairs.empty() && near_planes.empty(); }
   const std::vector<NearPair> &pairs() const { return near_pairs; }
   const std::vector<std::pair<int, int>> &planes() const { return near_planes; }    // numbers of the object and of the plane
-  bool has_zones(int object) const { return !zones[object].empty(); }
+  bool has_zones(int object) const { return object >= 0 && !zones[object].empty(); }
   // Whether a particle of an object may take part in contacts.
   bool needs(const ContactParticle &particle, const Vec3 &x) const;
   double skin() const { return skin_now; }

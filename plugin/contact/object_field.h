@@ -32,7 +32,7 @@ class ObjectField : public FieldOf<FieldContact, PointTrack> {
                     ContactAccount &account) const = 0;
 
   double approach() const override { return nearer(*owner, *host); }
-  bool distrusts(std::size_t q) const override { return known[q].cell[0] >= 0; }    // what is near to the host
+  bool distrusts(std::size_t q) const override { return known[q].cell[0] != -1; }    // what is near to the host
   void begin_step(const ContactArrays &arrays) override;
   const SurfacePoint &surface_point(std::size_t q) const { return owner->body->points()[near[q]]; }
   // False where not all of its particles are here.

@@ -330,7 +330,7 @@ void FixMdanimContact::list()
   std::vector<double> extents = world_of_contact.near.initial_extents();
   if (!extents.empty()) {
     lower_by_all(threads_now, nlocal, extents, [this](int i, std::vector<double> &here) {
-      if (objects[i] >= 0) world_of_contact.near.lower_extents(objects[i], vec3(atom->x[i]), here);
+      if (world_of_contact.near.has_zones(objects[i])) world_of_contact.near.lower_extents(objects[i], vec3(atom->x[i]), here);
     });
     MPI_Allreduce(MPI_IN_PLACE, extents.data(), static_cast<int>(extents.size()), MPI_DOUBLE, MPI_MIN, world);
     world_of_contact.near.drop_separated_pairs(extents);
@@ -338,7 +338,7 @@ void FixMdanimContact::list()
   std::vector<std::pair<ContactParticle, int>> needed;    // and local indices
   const auto node = [this](int i) { return static_cast<int>(atom->tag[i] - lowest[objects[i]]); };
   const auto is_needed = [&](int i) {
-    return objects[i] >= 0 && world_of_contact.near.needs({objects[i], node(i)}, vec3(atom->x[i]));
+    return world_of_contact.near.has_zones(objects[i]) && world_of_contact.near.needs({objects[i], node(i)}, vec3(atom->x[i]));
   };
   if (!world_of_contact.near.none())
     for (const int i : find_all(threads_now, nlocal, is_needed)) needed.push_back({{objects[i], node(i)}, i});

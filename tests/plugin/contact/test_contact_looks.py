@@ -148,3 +148,18 @@ def test_on_the_ground_a_cube_takes_part_with_its_lowest_particles(prepared):
         instance.run(2)
         assert instance.fix_value("ground", TOUCHING) == 7 * 7 + 4 * 7
         assert instance.fix_value("ground", BYTES_OF_PARTICLES) < 18_000
+
+
+def test_points_of_balls_that_fly_past_each_other_are_put_off_without_a_look(prepared):
+    """A cell is left between them; each look at a point of one takes a search for the nearest cell of the other."""
+    ball = f"shape sphere 3 cm  {SOLID}  spin (0, 0, 40) rad/s"
+    text = (
+        f"object a {{ {ball}  position (-4, 0, 0) cm  velocity (1, 0, 0) }}\n"
+        f"object b {{ {ball}  position (4, 7, 0) cm  velocity (-1, 0, 0) }}\n"
+        "control { time 1 s  resolution 1 cm }\n"
+    )
+    with Instance(prepared(text).plan) as instance:
+        instance.setup()
+        instance.run(400)
+        assert instance.fix_value("contact", 6) == 1.0  # near
+        assert instance.fix_value("contact", LOOKS) < 100.0
