@@ -11,6 +11,7 @@ from mdanim_lammps.model.grid import Grid
 from mdanim_lammps.picture.foam import BREAKING, FADE, MOST, Foam, breaking, looked_at, spread, ways
 from mdanim_lammps.picture.light import Light
 from mdanim_lammps.picture.render import Painter
+from mdanim_lammps.picture.skin import LiquidSkin
 from mdanim_lammps.picture.tank import Tank
 from mdanim_lammps.results.trajectory import Trajectory
 from mdanim_lammps.scene.render import Camera, Render
@@ -159,23 +160,24 @@ def test_a_breaking_front_is_drawn_white(tmp_path):
 
 @pytest.mark.soak
 def test_parts_of_the_surface_that_need_less_look_as_all_do(tmp_path, monkeypatch):
-    """Each triangle drawn by a shader that does for it, and all by that with foam and shadows: the same picture, to rounding."""
+    """Each triangle drawn by a shader that does for it, and all by that with foam, shadows and holes: the same to rounding."""
     scene, models, grid = pool_scene([box("cube", (0.4, 0.4, 0.2), (4, 4, 2), (0.4, 0.0, 1.3))])
     x, _ = column_centres(grid)
     smooth = [0.7 - 0.3 * np.clip(1.0 + 10.0 * (x - front), 0.0, 1.0) for front in (-0.5, -0.4, -0.3)]
     frames = wet_frames(models, *((z, raw_of(grid, z, models)) for z in smooth))
     render = Render(camera=(Camera((0.0, -3.5, 2.4), (0.0, 0.0, 0.45)),))
     everything = lambda light, points, triangle: np.ones(len(triangle), bool)
-    found, parts = [], []
+    take, found, parts = LiquidSkin.take, [], []
     with Trajectory(write(tmp_path / "t.h5", scene, models, frames, grid)) as t:
         for all_ in (False, True):
             if all_:
                 monkeypatch.setattr(Light, "may_shade", everything)
+                monkeypatch.setattr(LiquidSkin, "take", lambda skin, *args: take(skin, *args[:2], whole=False))
                 monkeypatch.setattr(Tank, "_foamy", lambda tank: np.ones(tank._mesh.data.GetNumberOfPoints(), bool))
             with Painter(t, render, size=SIZE) as painter:
                 found.append(painter.frame(2).astype(int))
-                parts.append([actor.GetVisibility() for actor in painter._tank.outer[:4]])
-    assert sum(parts[0]) > 1 and parts[1] == [0, 0, 0, 1]
+                parts.append([actor.GetVisibility() for actor in painter._tank.outer[:8]])
+    assert sum(parts[0]) > 1 and parts[1] == [0, 0, 0, 0, 0, 0, 0, 1]
     assert abs(found[0] - found[1]).max() <= 2
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from ..scene.render import Quality, Render
 from .floor import FloorPlane, FloorShade
@@ -19,7 +18,7 @@ PIXELS, MORE_PIXELS = 1024, 2048
 """Pixels of the lamp's picture, along a side; more where objects are small, and in final quality."""
 REACH = 1.5
 """Distance to which surfaces that hide the sky have an effect, in sizes of an object."""
-BLOCK = 16
+BLOCK = 8
 """Pixels of the lamp's picture, along a side, of which the nearest to the lamp is known."""
 EDGE, STEEP = 3, 42
 """How far from a point its shadow is looked up, in pixels, and by how much nearer the surface may be there, in depths that are a
@@ -215,4 +214,7 @@ def nearest_around(depth: np.ndarray, block: int) -> np.ndarray:
 
 def _of_nine(least: np.ndarray) -> np.ndarray:
     """The least of each number and the eight around it, shape (n, m)."""
-    return sliding_window_view(np.pad(least, 1, mode="edge"), (3, 3)).min(axis=(2, 3))
+    rows = np.concatenate([least[:1], least, least[-1:]])
+    rows = np.minimum(np.minimum(rows[:-2], rows[2:]), least)
+    both = np.concatenate([rows[:, :1], rows, rows[:, -1:]], axis=1)
+    return np.minimum(np.minimum(both[:, :-2], both[:, 2:]), rows)

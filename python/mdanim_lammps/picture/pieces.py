@@ -39,6 +39,11 @@ class MovingMesh:
         """Where the vertices are [m], float32, shape (V, 3)."""
         return self._points
 
+    @property
+    def normals(self) -> np.ndarray:
+        """Their normals, float32, shape (V, 3)."""
+        return self._normals
+
     def paint(self, color: np.ndarray) -> None:
         """Colour every vertex, uint8, shape (V, 3)."""
         from vtkmodules.util.numpy_support import numpy_to_vtk

@@ -2,10 +2,13 @@
 """The skin of the liquid: its shaders, and which of them its triangles need.
 
 Software OpenGL computes all that a shader may need for every pixel. So there is a shader with foam and one without, one with
-shadows and one without, and each triangle is drawn by the one that does for it.
+shadows and one without, one for steep faces and for a sheet with holes and one without these, and each triangle is drawn by the
+one that does for it.
 """
 
 from __future__ import annotations
+
+from itertools import product
 
 import numpy as np
 
@@ -17,6 +20,9 @@ REFRACTIVE_INDEX = 1.33
 """Refractive index of the liquid, over that of air."""
 NORMAL_SHARE = ((REFRACTIVE_INDEX - 1.0) / (REFRACTIVE_INDEX + 1.0)) ** 2
 """Share of light that the surface throws back, seen straight on."""
+
+LEVEL = 0.51
+"""Upward part of normals from which on a face looks up: a little more than the 0.5 of shaders."""
 
 # Foam lies in specks, which are the fewer the less of it there is: where it fades, holes grow in it. The liquid is seen
 # between them also where there is most of it. On a steep face they are drawn out downward, as on a fall.
@@ -176,10 +182,11 @@ FRAGMENT_SKIN = """//VTK::Light::Impl
   vec3 toEye = normalize(eye - worldPosition);
   vec3 toLamp = normalize(lamp);
   // Beside a wall the depth is that of the column behind it.
-  float inside = liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy).r;
+  float inside = STEEP ? liquidHeight(worldPosition.xy - 0.25 * cell.xy * n.xy).r : worldPosition.z;
   float top = n.z > 0.5 ? worldPosition.z : abs(n.z) > 1e-3 ? max(worldPosition.z, inside) : inside;
   // The sheet runs on through a hull that is dry inside; at the glass the liquid below the hull is seen.
-  float dry = texture(liquidDry, (worldPosition.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy)).r;
+  vec2 place = (worldPosition.xy - basinLow.xy) / (basinHigh.xy - basinLow.xy);
+  float dry = STEEP ? texture(liquidDry, place).r : 0.0;
   if (dry > 0.5 && (abs(n.z) > 1e-3 || worldPosition.z > inside + 0.5 * cell.z)) discard;
   float film = smoothstep(0.1, 0.5, (top - basinLow.z) / cell.z);
   if (film <= 0.0) discard;
@@ -229,10 +236,10 @@ FRAGMENT_SKIN = """//VTK::Light::Impl
 """
 
 
-def _fragment(inner: bool, foamy: bool = False, shaded: bool = False, sky: bool = False) -> str:
-    """The shader of faces seen from inside or from outside; ``foamy``: with foam, ``shaded``: with shadows, ``sky``: behind which
-    sky may be."""
-    words = {"INNER": inner, "SHADED": shaded, "SKY": sky}
+def _fragment(inner: bool, steep: bool = True, foamy: bool = False, shaded: bool = False, sky: bool = False) -> str:
+    """The shader of faces seen from inside or from outside; ``steep``: of any, not only of those that look up and have no holes,
+    ``foamy``: with foam, ``shaded``: with shadows, ``sky``: behind which sky may be."""
+    words = {"INNER": inner, "STEEP": steep, "SHADED": shaded, "SKY": sky}
     named = "".join(f"const bool {name} = {str(value).lower()};\n" for name, value in words.items())
     white = "foam(worldPosition, inside, n, bright)" if foamy else "0.0"
     return FRAGMENT_SKIN.replace("{\n", "{\n" + named, 1).replace("WHITE", white).replace("NORMAL_SHARE", repr(NORMAL_SHARE))
@@ -251,17 +258,16 @@ class LiquidSkin:
     """
 
     def __init__(self, mesh: MovingMesh, foam: Lookup, cut: Lookup, cell: np.ndarray, cover: float, behind: Behind | None):
-        self._mesh, self._triangle, self._foamy = mesh, np.zeros((0, 3), np.int32), np.zeros(0, bool)
+        self._mesh, self._triangle, self._foamy, self._whole = mesh, np.zeros((0, 3), np.int32), np.zeros(0, bool), True
         bend = bent() if behind else NOT_BENT
         self.inner = [self._actor(mesh.data, _fragment(True, sky=sky), NOT_BENT) for sky in (False, True)]
         """Actors of faces seen from inside, without and with the sky behind; one of them is seen."""
         self.outer, self._parts = [], []
-        """Actors of faces seen from outside, each of some triangles."""
-        for foamy in (False, True):
-            for shaded in (False, True):
-                part = MovingMesh(0, np.zeros((0, 3)))
-                self._parts.append(part.data)
-                self.outer.append(self._actor(part.data, _fragment(False, foamy, shaded), (FOAM if foamy else "") + bend))
+        """Actors of faces seen from outside, each of some triangles; steep ones, as walls and crests before others, come last."""
+        for kind in product((False, True), repeat=3):
+            part = MovingMesh(0, np.zeros((0, 3)))
+            self._parts.append((kind, part.data))
+            self.outer.append(self._actor(part.data, _fragment(False, *kind), (FOAM if kind[1] else "") + bend))
         for actor in self.inner:
             actor.GetProperty().FrontfaceCullingOn()
         for actor in self.outer:
@@ -280,9 +286,10 @@ class LiquidSkin:
     def _actor(data, fragment: str, functions: str):
         return lit_actor(data, fragment, liquid=True, sky=False, functions=functions)
 
-    def take(self, triangle: np.ndarray, foamy: np.ndarray) -> None:
-        """Have these triangles of the sheet, shape (T, 3), of whose vertices foam may be around some, bool, shape (V,)."""
-        self._triangle, self._foamy = triangle, foamy[triangle].any(axis=1)
+    def take(self, triangle: np.ndarray, foamy: np.ndarray, whole: bool) -> None:
+        """Have these triangles of the sheet, shape (T, 3), of whose vertices foam may be around some, bool, shape (V,);
+        ``whole``: without holes."""
+        self._triangle, self._foamy, self._whole = triangle, foamy[triangle].any(axis=1), whole
 
     def part(self, light: Light, eye: np.ndarray, floor: bool) -> None:
         """Draw each triangle by what it needs: as light falls in this frame, as an eye [m] sees it, and by whether a floor is
@@ -291,10 +298,11 @@ class LiquidSkin:
         for actor, seen in zip(self.inner, (not sky, sky)):
             actor.SetVisibility(bool(seen))
         shaded = light.may_shade(self._mesh.points, self._triangle) if len(self._triangle) else np.zeros(0, bool)
-        whole = self._mesh.data
-        for n, (data, actor) in enumerate(zip(self._parts, self.outer)):
-            own = self._triangle[(self._foamy == bool(n & 2)) & (shaded == bool(n & 1))]
-            data.SetPoints(whole.GetPoints())
-            data.GetPointData().SetNormals(whole.GetPointData().GetNormals())
+        steep = (self._mesh.normals[:, 2] <= LEVEL)[self._triangle].any(axis=1) | (not self._whole)
+        kinds, sheet = np.stack([steep, self._foamy, shaded], axis=1), self._mesh.data
+        for (kind, data), actor in zip(self._parts, self.outer):
+            own = self._triangle[(kinds == kind).all(axis=1)]
+            data.SetPoints(sheet.GetPoints())
+            data.GetPointData().SetNormals(sheet.GetPointData().GetNormals())
             data.SetPolys(cells(own))
             actor.SetVisibility(len(own) > 0)

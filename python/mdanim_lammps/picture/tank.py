@@ -153,7 +153,7 @@ class Tank:
             top = np.where(dry, undersides(grid, position), top)
         if self._foam:
             self._white.fill(self._foam.at(frame, self._liquid))
-        self._skins[0].take(self._form.triangle, self._foamy())
+        self._skins[0].take(self._form.triangle, self._foamy(), not self._dry.numbers.any())
         self._show_ponds(ponds, way)
         level, bottom = (ponds.level, ponds.bottom) if ponds else (top, np.full(top.shape, np.inf))
         self._heights.fill(np.stack([top, level, np.minimum(bottom, self._high[2])], axis=-1))
@@ -183,10 +183,10 @@ class Tank:
             self._pond.reshape(len(points), triangle)
             self._pond.move(points + way, normals)
             self._beside_ponds.fill(ponds.hidden)
-            self._skins[1].take(triangle, self._foamy())
+            self._skins[1].take(triangle, self._foamy(), not np.any(ponds.hidden))
         elif self._pond.data.GetNumberOfPolys():
             self._pond.reshape(1, np.zeros((0, 3)))
-            self._skins[1].take(np.zeros((0, 3), np.int32), np.zeros(1, bool))
+            self._skins[1].take(np.zeros((0, 3), np.int32), np.zeros(1, bool), True)
 
     def _foamy(self) -> np.ndarray:
         """Around which vertices of the sheet there may be foam, bool, shape (V,)."""
