@@ -18,6 +18,7 @@ void WaveSolver::find_heads(bool were_full)
   for (int pass = 0; pass < MOST_PASSES; ++pass) {
     assemble(run.some_full || were_full);
     solve(pass > 0, with_blocks);
+    if (run.some_full) pockets.level();
     if (!run.some_full || !let_go()) break;
     if (pass == MOST_PASSES - 1) loops.rows([&](long first, long end) { run.kernels->guess(arrays, true, first, end); });
   }

@@ -6,6 +6,7 @@
 #include "liquid/waves/wave_blocks.h"
 #include "liquid/waves/wave_loops.h"
 #include "liquid/waves/wave_mouths.h"
+#include "liquid/waves/wave_pockets.h"
 
 namespace mdanim {
 
@@ -14,7 +15,7 @@ class WaveSolver {
   // All must outlive this.
   WaveSolver(WaveColumns &columns, WaveRun &run, const WaveMouths &mouths)
       : columns(columns), run(run), mouths(mouths), law(run.law), arrays(columns.arrays), loops(columns, run.threads),
-        blocks(columns)
+        blocks(columns), pockets(columns)
   {
   }
 
@@ -44,6 +45,7 @@ class WaveSolver {
   WaveArrays &arrays;
   WaveLoops loops;
   WaveBlocks blocks;
+  WavePockets pockets;
   std::vector<std::uint8_t> stale;    // rows whose part of the system is to be made anew
 };
 

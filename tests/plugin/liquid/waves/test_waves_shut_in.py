@@ -47,3 +47,19 @@ def test_water_that_is_parted_keeps_its_pressure():
     spans = w.spans
     parted = (spans.column == 4 * 9 + 4) & (spans.high <= 8)
     assert parted.sum() == 2 and spans.full[parted].all() and spans.phi[parted] == pytest.approx(12.0)
+
+
+def test_water_in_a_tank_that_is_full_keeps_its_pressure_beside_waves():
+    """Nothing tells the head of a pocket that held walls and a lid shut in: what the solver added to all of it grew without end,
+    to 9.9 here and to 116 later."""
+    part = np.zeros((16, 12, 20), int)
+    part[:12, 2:10, 8:17] = 4096
+    part[:8, 3:9, 9:16] = 0
+    w = lab.Waves(part.shape)
+    w.solids(part)
+    w.pour(8 + 2 * np.exp(-((np.arange(20) / 3) ** 2)) * np.ones((12, 1)))
+    w.update(200)
+    spans = w.spans
+    below = (spans.low == 0) & (spans.roof == 8)
+    assert below.sum() == 42 and spans.full[below].all()
+    assert spans.phi[below] == pytest.approx(8.0, abs=0.1)
