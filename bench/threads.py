@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Gain of threads: ``python bench/threads.py [rounds [threads [scene ...]]] [--write]``.
+"""Gain of threads: ``python bench/threads.py [rounds [threads [scene ...]]] [--unshared] [--write]``.
 
 A scene is a name of bench/scene_texts.py, such as ``cube 30``, ``heap 208``, ``boxes 1000``, ``pool 46``, ``automaton 46``,
 ``float 1e5``, ``hail 64``, or the name of a file in scenes/. Told is the wall time of a step by one thread and by several, in
@@ -7,6 +7,9 @@ turns, beside the machine's own ceiling in the same rounds: what as many indepen
 over one alone. Where others use the processors, none of this says much; then the processor time of the thread that calls does,
 which falls by what others do for it. Figures are medians over rounds. All see the same steps of a scene in a round, without
 frames.
+``--unshared`` tells instead what part of a step threads do not share: the calling thread leaves all that is shared to another
+one and sleeps (MDANIM_CALLER_RESTS in plugin/threads/team.cpp), so its processor time is that of the rest, with about 4 µs for
+each time that it hands out tasks. Other programs hardly change it.
 ``--write`` puts the table into docs/decisions/threads.md.
 """
 
@@ -27,7 +30,7 @@ PAGE = Path(__file__).resolve().parents[1] / "docs" / "decisions" / "threads.md"
 ALONE, SHARED, AT_ONCE = "alone", "shared", "at once"
 ROUNDS = 9
 NAMES = ("cube 30", "cube 60", "beam", "crowd", "heap 208", "boxes 1000", "pool 46", "automaton 46", "float 1e5")
-FIRST_STEPS, PARTICLE_STEPS, SECONDS = 20, 8_000_000, 2.0
+FIRST_STEPS, PARTICLE_STEPS, SECONDS = 20, 8_000_000, 0.6
 """Steps that are not measured; the most that are measured at once, times particles, and how long they may take about."""
 
 
@@ -132,24 +135,37 @@ def measure(name: str, threads: int, rounds: int) -> tuple[str, ...]:
     )
 
 
+UNSHARED = ("scene", "µs a step, 1 thread", "not shared", "part", "times as fast by 2 threads at best")
+
+
+def unshared(name: str, rounds: int) -> tuple[str, ...]:
+    """One row of the table of what is not shared, by processor time of the calling thread."""
+    os.environ["MDANIM_CALLER_RESTS"] = "1"  # for the child
+    with Servers(name, {ALONE: 1, SHARED: 2}) as servers:
+        turns = [[1e6 * servers.seconds(who)[1] for who in (ALONE, SHARED)] for _ in range(rounds)]
+    one, rest = (statistics.median(turn[k] for turn in turns) for k in range(2))
+    return name, f"{one:.0f}", f"{rest:.0f}", f"{rest / one:.2f}", f"{2.0 / (1.0 + rest / one):.2f}"
+
+
 def main() -> None:
     """Measure scenes and print a table in Markdown."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("rounds", nargs="?", type=int, default=ROUNDS)
     parser.add_argument("threads", nargs="?", type=int, default=2)
     parser.add_argument("scenes", nargs="*", metavar="scene", help=f"by default: {', '.join(NAMES)}")
+    parser.add_argument("--unshared", action="store_true")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_intermixed_args()
-    head = [word.format(options.threads) for word in HEAD]
-    names = "".join(f' "{name}"' for name in options.scenes)
+    head = UNSHARED if options.unshared else [word.format(options.threads) for word in HEAD]
+    names = "".join(f' "{name}"' for name in options.scenes) + " --unshared" * options.unshared
     note = f"`python bench/threads.py {options.rounds} {options.threads}{names}`. {machine()}."
     print(f"{note}\n\n{markdown(head, [])}", flush=True)
     rows = []
     for name in options.scenes or NAMES:
-        rows.append(measure(name, options.threads, options.rounds))
+        rows.append(unshared(name, options.rounds) if options.unshared else measure(name, options.threads, options.rounds))
         print("| " + " | ".join(rows[-1]) + " |", flush=True)
     if options.write:
-        replace_between(PAGE, "threads", f"{note}\n\n{markdown(head, rows)}")
+        replace_between(PAGE, "unshared" if options.unshared else "threads", f"{note}\n\n{markdown(head, rows)}")
 
 
 if __name__ == "__main__":

@@ -19,16 +19,15 @@ static constexpr int PARTS_OF_THREAD = 8;
 void FieldSums::clear()
 {
   for (std::size_t k = 0; k < rests.size(); ++k) active[k].field->rest(rests[k].budget);
-  active.clear(), rests.clear(), ends.clear(), has_something.clear(), costs.assign(1, 0);
+  active.clear(), rests.clear(), has_something.clear(), costs.assign(1, 0);
 }
 
 void FieldSums::weigh()
 {
   costs.assign(1, 0);
-  rests.clear(), ends.clear();
+  rests.clear();
   for (const Active &one : active) {
     costs.push_back(costs.back() + FIELD_COST + one.field->cost());
-    ends.push_back({one.a, one.b});
     rests.push_back({one.a, one.b, one.field->at_plane(), one.field->budget_now(), one.field->rests_until()});
   }
   has_something.assign(active.size(), false);
@@ -147,7 +146,7 @@ void FieldSums::find_order(std::size_t objects)
   for (auto &some : after_chain) some.clear();
   for (std::size_t k = 0; k < active.size(); ++k) {
     if (!has_something[k]) continue;
-    const ObjectsOfField &one = ends[k];
+    const Rest &one = rests[k];
     const int chain = std::max(longest[one.a], longest[one.b]);
     if (static_cast<std::size_t>(chain) == after_chain.size()) after_chain.emplace_back();
     after_chain[chain].push_back({k, before[one.a], before[one.b]});

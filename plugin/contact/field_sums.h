@@ -43,9 +43,6 @@ class FieldSums {
     const ContactPlane *at_plane;    // null for a field of two objects
     double budget, until;
   };
-  struct ObjectsOfField {
-    int a, b;
-  };
   // A field with forces to add in this step, and the number of fields that come before it on each of its objects.
   struct OrderedField {
     std::size_t number;
@@ -63,7 +60,6 @@ class FieldSums {
 
   std::vector<Active> active;                            // in the order of sums,
   std::vector<Rest> rests;                               // the same,
-  std::vector<ObjectsOfField> ends;                      // their objects, which no step changes,
   std::vector<char> has_something;                       // whether each has forces to add in this step,
   std::vector<long> costs = {0};                         // and the cost of all before each of them; at the end, that of all
   double looks_before = 0.0;                             // at points of objects, in the last step

@@ -44,6 +44,14 @@ void set_floating_point_mode(unsigned mode)
 #endif
 }
 
+// Whether a caller leaves all tasks to others and sleeps, so that its processor time is that of what is not shared
+// (bench/threads.py).
+bool caller_rests()
+{
+  static const bool asked = std::getenv("MDANIM_CALLER_RESTS");
+  return asked;
+}
+
 std::uint32_t call_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 32); }
 
 }    // namespace
@@ -100,7 +108,7 @@ Team::~Team()
 
 bool Team::is_ready(double ns, double worth)
 {
-  if (!asleep.load(std::memory_order_relaxed)) return true;
+  if (!asleep.load(std::memory_order_relaxed) || caller_rests()) return true;
   const double left = alone.load(std::memory_order_relaxed) + ns;
   if (left >= worth) return true;
   alone.store(left, std::memory_order_relaxed);
@@ -128,8 +136,14 @@ void Team::share_out(int tasks, Task what, void *of_whom)
     bell.notify_all();
     alone.store(0.0, std::memory_order_relaxed);
   }
-  work(call, 0);
-  wait_until([&] { return done.load(std::memory_order_acquire) == tasks; });
+  const auto is_done = [&] { return done.load(std::memory_order_acquire) == tasks; };
+  if (caller_rests()) {
+    std::unique_lock<std::mutex> lock(door);
+    bell.wait(lock, is_done);
+  } else {
+    work(call, 0);
+  }
+  wait_until(is_done);
   const std::exception_ptr failed = failure;
   called.clear(std::memory_order_release);
   if (failed) std::rethrow_exception(failed);
@@ -158,6 +172,12 @@ void Team::work(std::uint32_t call, int member)
       if (!failure) failure = std::current_exception();
     }
     done.fetch_add(1, std::memory_order_release);
+  }
+  if (member && caller_rests()) {
+    {
+      const std::lock_guard<std::mutex> lock(door);
+    }    // a caller that is between its last look and its sleep
+    bell.notify_all();
   }
 }
 

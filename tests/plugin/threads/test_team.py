@@ -2,6 +2,8 @@
 """Threads that share tasks: plugin/threads/team.h, without LAMMPS."""
 
 import os
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -29,6 +31,17 @@ def test_sleeping_threads_take_their_share():
     functions().mdanim_team_wakes(3, 12, 50_000, 50_000, found)
     threads, other_modes = found
     assert threads == 3 and other_modes == 0
+
+
+def test_others_do_the_tasks_of_a_caller_that_rests():
+    """MDANIM_CALLER_RESTS is read once in a process."""
+    code = (
+        "import numpy as np; from engine_lab import functions; found = np.zeros(2, np.int32); "
+        "functions().mdanim_team_wakes(3, 4, 10_000, 20_000, found); print(found[0])"
+    )
+    rests = {**os.environ, "MDANIM_CALLER_RESTS": "1", "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", code], env=rests, capture_output=True, text=True)
+    assert done.stdout == "2\n", done.stderr
 
 
 @pytest.mark.parametrize("threads", [1, 3])
