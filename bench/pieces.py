@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Objects in pieces: ``python bench/pieces.py heights|blows|cost|many`` prints the tables of docs/physics-pieces.md.
+"""Objects in pieces: ``python bench/pieces.py heights|blows|cost|many|rebound`` prints the tables of docs/physics-pieces.md.
 
 ``heights``: from which height a plate breaks, by strength, accuracy and pieces; ``blows``: what a cylinder of glass bears, by the
-stiffness of contact; ``cost``: processor time of a step before and after; ``many``: ten thousand pieces.
+stiffness of contact; ``cost``: processor time of a step before and after; ``many``: ten thousand pieces; ``rebound``: speed after
+a blow in which an object comes apart.
 """
 
 from __future__ import annotations
 
+import itertools
 import sys
+import tempfile
 import time
 
 import numpy as np
+from mdanim_lammps import Scene, Trajectory
 from mdanim_lammps.engine.instance import Instance
 from mdanim_lammps.run.prepare import prepare
 from mdanim_lammps.scene.parse import parse_scene
@@ -26,6 +30,12 @@ CYLINDER = """object glass {{ shape cylinder 4 cm 12 cm  position (0, 0, 1.07) m
 gravity (0, 0, -9.81) m/s^2
 ground z 0 m
 control {{ time 0.5 s  frames 10 fps  contact-stiffness {stiffness} }}
+"""
+BLOCK = """object {name} {{ shape box (20, 10, 10) cm  position (0, 0, 5.2) cm  orientation axis (0, 1, 0) angle {angle} deg
+  elasticity rigid  density 2000  pieces 2  strength {strength} Pa  restitution 0.5  velocity (0, 0, -2) m/s }}
+gravity (0, 0, -9.81) m/s^2
+ground z 0 m
+control {{ time 0.02 s  frames 500 fps }}
 """
 LOWEST, HIGHEST, HALVINGS = 0.1, 6.4, 6
 WALL = """object wall {{ shape box ({wide}, 0.2, {high}) m  position (0, 0, {middle}) m  elasticity rigid  density 1900
@@ -115,6 +125,23 @@ def many() -> None:
               f"{instance.fix_value('rigid', 'broken_faces'):.0f} faces broken")  # fmt: skip
 
 
+def rebound() -> None:
+    """Largest upward speed of the centre of a block in two pieces, over that at which it came: whole, apart in the middle of the
+    blow, and at once."""
+    print("| cut | leans | whole | apart on the way | apart at once |\n|---|---|---|---|---|")
+    for name, angle in itertools.product("abcd", (0.0, 0.5)):
+        row = []
+        for strength in (1e9, 3e4, 10.0):
+            scene = Scene.from_text(BLOCK.format(name=name, angle=angle, strength=strength))
+            with tempfile.TemporaryDirectory() as folder:
+                scene.run(f"{folder}/out", movie=False, progress=False)
+                with Trajectory(f"{folder}/out") as found:
+                    mass = scene.prepared.system.mass_of
+                    up = np.array(found.center_velocities)[:, :, 2] @ mass / mass.sum()
+            row.append(f"{up.max() / abs(up).max():.2f}")
+        print(f"| {name} | {angle:g}° | {' | '.join(row)} |", flush=True)
+
+
 if __name__ == "__main__":
-    for what in sys.argv[1:] or ["heights", "blows", "cost", "many"]:
-        {"heights": heights, "blows": blows, "cost": cost, "many": many}[what]()
+    for what in sys.argv[1:] or ["heights", "blows", "cost", "many", "rebound"]:
+        {"heights": heights, "blows": blows, "cost": cost, "many": many, "rebound": rebound}[what]()
