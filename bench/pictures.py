@@ -2,8 +2,9 @@
 """Cost of a picture: python bench/pictures.py FOLDER ... prints seconds of one core per picture of 1280 x 720, in draft and in
 final quality, and the memory of the process that draws, for output folders of runs. Without a folder: what the command
 ``mdanim-lammps picture scenes/beam.txt`` takes. ``floor FOLDER ...``: what the window of objects takes when it is empty, by VTK's
-own shader and by ours, beside a whole draft. ``tells FOLDER ...``: a draft with what its scene lays over pictures and without,
-and the functions of these layers that are called where nothing is asked for."""
+own shader and by ours, beside a whole draft. ``coding FOLDER ...``: what the encoder takes for a picture of a movie, and for one
+that is the same as before. ``tells FOLDER ...``: a draft with what its scene lays over pictures and without, and the functions of
+these layers that are called where nothing is asked for."""
 
 from __future__ import annotations
 
@@ -21,6 +22,7 @@ from tempfile import TemporaryDirectory
 SCENE = Path(__file__).parents[1] / "scenes" / "beam.txt"
 RUNS = 7
 PICTURES = 8
+CODED = 60
 SIZE = (1280, 720)
 
 
@@ -101,6 +103,47 @@ def print_floors(folders: list[str]) -> None:
         print(f"{Path(folder).name:<24} {pixels:7d} " + " ".join(f"{1e3 * s:9.1f}" for s in seconds), flush=True)
 
 
+def coding(folder: str) -> tuple[float, float]:
+    """Seconds of processor time of the encoder, and of what makes pictures ready for it, for each picture of a stretch in the
+    middle of a run, and for each of as many that are all the same; the least of several."""
+    os.environ["LP_NUM_THREADS"] = "1"
+    from fractions import Fraction
+
+    from mdanim_lammps.picture.encoder import Yuv, encoder
+    from mdanim_lammps.picture.render import Painter
+    from mdanim_lammps.results.trajectory import Trajectory
+    from mdanim_lammps.run.folder import stored_scene
+
+    def spent() -> float:
+        used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+        return sum(u.ru_utime + u.ru_stime for u in used)
+
+    with Trajectory(folder) as trajectory, Painter(trajectory, stored_scene(Path(folder)).render, size=SIZE) as painter:
+        first = max(0, (len(trajectory) - CODED) // 2)
+        pictures = [painter.pixels(index).copy() for index in range(first, min(len(trajectory), first + CODED))]
+    found = []
+    with TemporaryDirectory() as place:
+        for shown in (pictures, pictures[:1] * len(pictures)):
+            times = []
+            for _ in range(3):
+                start, yuv = spent(), Yuv()
+                with encoder(Path(place) / "movie.mp4", SIZE, Fraction(30)) as encode:
+                    for picture in shown:
+                        encode(yuv.of(picture))
+                times.append((spent() - start) / len(shown))
+            found.append(min(times))
+    return found[0], found[1]
+
+
+def print_codings(folders: list[str]) -> None:
+    """Print a line for each folder, each measured by a process of its own."""
+    print(f"{'folder':<24} picture of a movie [ms]  the same again")
+    for folder in folders:
+        with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+            moving, still = pool.submit(coding, folder).result()
+        print(f"{Path(folder).name:<24} {1e3 * moving:23.1f} {1e3 * still:15.1f}", flush=True)
+
+
 LAYERS = ("overlay.py", "layer.py", "curves.py", "ghosts.py", "tones.py", "run_values.py")
 """Files of what scenes lay over pictures."""
 
@@ -148,6 +191,9 @@ def main(folders: list[str]) -> None:
     """Print a line for each folder."""
     if folders[:1] == ["tells"]:
         print_tells(folders[1:])
+        return
+    if folders[:1] == ["coding"]:
+        print_codings(folders[1:])
         return
     if folders[:1] == ["floor"]:
         print_floors(folders[1:])
