@@ -28,7 +28,7 @@ from timing import machine, markdown, replace_between
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "decisions" / "threads.md"
 ALONE, SHARED, AT_ONCE = "alone", "shared", "at once"
-ROUNDS = 9
+ROUNDS = 7
 NAMES = ("cube 30", "cube 60", "beam", "crowd", "heap 208", "boxes 1000", "pool 46", "automaton 46", "float 1e5")
 FIRST_STEPS, PARTICLE_STEPS, SECONDS = 20, 8_000_000, 0.6
 """Steps that are not measured; the most that are measured at once, times particles, and how long they may take about."""
