@@ -113,6 +113,7 @@ bool LatticeField::is_near(std::size_t q, const Moment &at, const ContactArrays 
 // Puts a point off that is far from all of the host's surface, whatever is known of it.
 bool LatticeField::is_beside_outline(std::size_t q, const ContactArrays &arrays)
 {
+  if (!host->outline.is_known()) return false;
   const double away = host->outline.away(owner->place_of(near[q], arrays.place())) - owner->body->radius();
   if (!(away > WORTH * host->body->spacing())) return false;
   wake.set(q, budget + away);

@@ -55,7 +55,7 @@ void Outline::fit(const PaddedVec3 *place)
   std::copy(map.K, map.K + 3, into);
   beside = weights * std::sqrt(square);
   stirred = 0.0;
-  is_known = map.det > 0.0;
+  has_map = map.det > 0.0;
 }
 
 void Outline::follow(const Vec3 &way, double stir, const PaddedVec3 *place)

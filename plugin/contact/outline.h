@@ -16,15 +16,15 @@ namespace mdanim {
 
 class Outline {
  public:
-  void forget() { all.clear(), is_known = false; }
+  void forget() { all.clear(), has_map = false; }
   // The outline of a round body, from those of its particles whose places in the grid these are, and which are at `place`.
   void begin(const ContactBody &body, const std::vector<Vec3> &grid, const PaddedVec3 *place);
   // The particles, now at `place`, have moved by `way` in the mean, and no point by more than `stir` beside it.
   void follow(const Vec3 &way, double stir, const PaddedVec3 *place);
-  // How far a place is outside, or less; nothing is known of one that is not [m].
+  bool is_known() const { return has_map; }
+  // Where it is known, how far a place is outside, or less; 0 or less tells nothing [m].
   double away(const Vec3 &x) const
   {
-    if (!is_known) return 0.0;
     const Vec3 from = x - middle, v = Vec3{dot(into[0], from), dot(into[1], from), dot(into[2], from)} - centre;
     // To the plane on the ellipsoid whose normal goes through v.
     const Vec3 across = v.x * into[0] + v.y * into[1] + v.z * into[2];
@@ -41,7 +41,7 @@ class Outline {
   void fit(const PaddedVec3 *place);
 
   std::vector<Fitted> all;
-  bool is_known = false;
+  bool has_map = false;
   Vec3 into[3], middle, centre;    // the map to where the ellipsoid is a ball; the mean of particles, and its centre from that
   double beside = 0.0;             // what the surface may be beside the ellipsoid [m]
   double stirred = 0.0, renewed = 0.0;    // since the map was fitted, and until it is fitted again [m]
