@@ -26,9 +26,10 @@ PARTS = {
     "contacts": r"anonymous namespace\)::push|push_at_plane|add_at_plane|find_points|add_to_|::push\b|::push_"
     r"|(Object|Plane)Field::(add|begin|end)",
     "looks": r"look|sight|is_near|cell_nearest|outer_around|PointSearch|OuterCells::nearest|judge|evaluate|find_facing"
-    r"|put_off|fetch|find_due|slack|MaterialSearch",
+    r"|put_off|fetch|find_due|slack|MaterialSearch|[oO]utline",
     "crushed cells": r"volume_of_cell|find_crushed",
-    "hand-over": r"FixMdanimContact::add_forces|move_to|tell_places|take_external|FieldSums|goes_on_resting",
+    "hand-over": r"FixMdanimContact::add_forces|move_to|move_particles|tell_places|early_participants|take_external|FieldSums"
+    r"|goes_on_resting",
     "springs and motion": r"pass_of_range|feel_strip|[vV]erlet|PassRun|PassEngine|SimdBlocks|Leapfrog",
     "lists and the rest": r".",
 }
