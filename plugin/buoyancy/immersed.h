@@ -47,8 +47,9 @@ template <class Real, class Small = Real> struct InWaves {
     const Real part = smaller(larger(exact[BASE] - exact[SLOPE] * z, constant<Real>(0.0)), constant<Real>(1.0));
     return {part, {small[ALONG_X], small[ALONG_Y], part + small[MORE]}, {small[FLOW_X], small[FLOW_Y], Real{}}, small[RISING]};
   }
-  bool acts() const
-  { return exact[BASE] != 0 || exact[SLOPE] != 0 || small[MORE] != 0 || small[ALONG_X] != 0 || small[ALONG_Y] != 0; }
+  // Nothing is below the surface, so flow and the solid's motion do not count: a push upwards is all, which may be 0.
+  bool only_lifts() const { return exact[BASE] == 0 && exact[SLOPE] == 0 && small[ALONG_X] == 0 && small[ALONG_Y] == 0; }
+  bool acts() const { return !only_lifts() || small[MORE] != 0; }
   bool is_finite() const
   {
     Real sum{};

@@ -26,14 +26,14 @@ class ImmersedBlocks {
   void list(const Threads &threads, const PassLiquid &liquid, const double *lambda, std::vector<Block> &all, const Own &own);
   // Takes in what is kept for particles; blocks that are held back are left out.
   template <class Own>
-  void take_in(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own, ImmersedRows &rows);
+  void take_in(const Threads &threads, PassLiquid &liquid, std::vector<Block> &all, const Own &own, ImmersedRows &rows);
   // Where nothing is kept: the parts of particles below the surface in this step, at their places.
   void look_up(const Threads &threads, const PassLiquid &liquid, const std::vector<Block> &all, const double *const *x);
   // Gives the impulses of particles on the liquid back.
   template <class Own>
   void give_out(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own) const;
 
-  double particles() const { return particles_in; }    // of blocks that are not held back
+  double particles() const { return particles_in; }    // of blocks that are not held back, and in the liquid
   std::size_t bytes() const
   {
     return kept.bytes() + small.bytes() + coefficients.bytes() + coefficients_of.capacity() * sizeof(unsigned) +
@@ -41,10 +41,20 @@ class ImmersedBlocks {
   }
 
  private:
-  // Calls work(particle, number of the block, its lane) for all own particles that the liquid acts on in passes, shared among
-  // threads. Returns the number of these particles.
-  template <class Own, class Work>
-  long each(const Threads &threads, const std::vector<Block> &all, const Own &own, const Work &work) const;
+  // Calls work(number, block) for all blocks that are not held back, shared among threads.
+  template <class All, class Work> void each_block(const Threads &threads, All &all, const Work &work) const
+  {
+    threads.parts(static_cast<long>(blocks.size()), PARTICLE * lanes, [&](long from, long to) {
+      for (long n = from; n < to; ++n)
+        if (auto &block = all[blocks[n]]; !block.held_back) work(n, block);
+    });
+  }
+  // Calls work(particle, lane) for the own particles of a block.
+  template <class Own, class Work> static void each_lane(const Block &block, const Own &own, const Work &work)
+  {
+    for (int lane = 0; lane < block.lanes; ++lane)
+      if (const int i = own(block.start + lane); i >= 0) work(i, lane);
+  }
   template <class Array> auto *number_at(Array &array, long block, int numbers, int number, int lane) const
   { return array.data() + (block * numbers + number) * lanes + lane; }
 
@@ -102,51 +112,37 @@ void ImmersedBlocks::list(const Threads &threads, const PassLiquid &liquid, cons
   listed = liquid.listed();
 }
 
-template <class Own, class Work>
-long ImmersedBlocks::each(const Threads &threads, const std::vector<Block> &all, const Own &own, const Work &work) const
-{
-  std::atomic<long> many{0};
-  threads.parts(static_cast<long>(blocks.size()), PARTICLE * lanes, [&](long from, long to) {
-    long of_part = 0;
-    for (long n = from; n < to; ++n) {
-      const Block &block = all[blocks[n]];
-      if (block.held_back) continue;
-      for (int lane = 0; lane < block.lanes; ++lane) {
-        const int i = own(block.start + lane);
-        if (i < 0) continue;
-        work(i, n, lane);
-        ++of_part;
-      }
-    }
-    many += of_part;
-  });
-  return many;
-}
-
 template <class Own>
-void ImmersedBlocks::take_in(const Threads &threads, PassLiquid &liquid, const std::vector<Block> &all, const Own &own,
+void ImmersedBlocks::take_in(const Threads &threads, PassLiquid &liquid, std::vector<Block> &all, const Own &own,
                              ImmersedRows &rows)
 {
   const InLiquid *const of_all = liquid.kept();
-  particles_in = static_cast<double>(each(threads, all, own, [=](int i, long block, int lane) {
-    if (!of_all) return;
-    const InLiquid &of = of_all[i];
-    const auto put = [&](int number, double value) { *number_at(kept, block, KEPT_NUMBERS, number, lane) = value; };
-    for (int k = 0; k < EXACT_NUMBERS; ++k) put(k, of.waves.exact[k]);
-    for (int k = 0; k < SMALL_NUMBERS; ++k) *number_at(small, block, SMALL_NUMBERS, k, lane) = of.waves.small[k];
-    put(IMPULSE_X, of.impulse_x);
-    put(IMPULSE_Y, of.impulse_y);
-  }));
+  std::atomic<long> many{0};
+  each_block(threads, all, [&](long n, Block &block) {
+    block.only_lifted = of_all;
+    if (of_all) each_lane(block, own, [&](int i, int) { block.only_lifted = block.only_lifted && of_all[i].waves.only_lifts(); });
+    if (!block.only_lifted) many += block.lanes;
+    if (of_all)
+      each_lane(block, own, [&](int i, int lane) {
+        const InLiquid &of = of_all[i];
+        const auto put = [&](int number, double value) { *number_at(kept, n, KEPT_NUMBERS, number, lane) = value; };
+        const auto put_small = [&](int k) { *number_at(small, n, SMALL_NUMBERS, k, lane) = of.waves.small[k]; };
+        if (block.only_lifted) return put_small(MORE);
+        for (int k = 0; k < EXACT_NUMBERS; ++k) put(k, of.waves.exact[k]);
+        for (int k = 0; k < SMALL_NUMBERS; ++k) put_small(k);
+        put(IMPULSE_X, of.impulse_x);
+        put(IMPULSE_Y, of.impulse_y);
+      });
+  });
+  particles_in = static_cast<double>(many);
   rows = {kept.data(), small.data(), coefficients.data(), coefficients_of.data(), liquid.scales(), liquid.top_of_near()};
 }
 
 inline void ImmersedBlocks::look_up(const Threads &threads, const PassLiquid &liquid, const std::vector<Block> &all,
                                     const double *const *x)
 {
-  threads.parts(static_cast<long>(blocks.size()), PARTICLE * lanes, [&](long from, long to) {
-    for (long n = from; n < to; ++n)
-      if (const Block &block = all[blocks[n]]; !block.held_back)
-        liquid.parts_below(x, block.start, block.lanes, number_at(kept, n, KEPT_NUMBERS, BASE, 0));
+  each_block(threads, all, [&](long n, const Block &block) {
+    liquid.parts_below(x, block.start, block.lanes, number_at(kept, n, KEPT_NUMBERS, BASE, 0));
   });
 }
 
@@ -155,9 +151,12 @@ void ImmersedBlocks::give_out(const Threads &threads, PassLiquid &liquid, const 
 {
   InLiquid *const of = liquid.kept();
   if (!of) return;
-  each(threads, all, own, [=](int i, long block, int lane) {
-    of[i].impulse_x = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_X, lane);
-    of[i].impulse_y = *number_at(kept, block, KEPT_NUMBERS, IMPULSE_Y, lane);
+  each_block(threads, all, [&](long n, const Block &block) {
+    if (block.only_lifted) return;    // pushes the liquid by nothing
+    each_lane(block, own, [&](int i, int lane) {
+      of[i].impulse_x = *number_at(kept, n, KEPT_NUMBERS, IMPULSE_X, lane);
+      of[i].impulse_y = *number_at(kept, n, KEPT_NUMBERS, IMPULSE_Y, lane);
+    });
   });
 }
 

@@ -33,6 +33,7 @@ struct Block {
   int object;            // molecule - 1
   int chunk;             // row of Pass::sums
   int immersed;          // row of Pass::immersed; negative where no particle is near a liquid
+  bool only_lifted;      // of the numbers in that row MORE alone is not 0 in some lane (InWaves::only_lifts)
   bool at_border;        // of a range of blocks: some of what is loaded for it belongs to another range
   int crossing;          // its row of Pass::crossed; negative where none of its springs crosses the border above it
 };

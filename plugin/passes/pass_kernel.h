@@ -153,9 +153,11 @@ MDANIM_ALWAYS_INLINE void advance(const Pass &pass, const Block &block, const Ve
   }
 }
 
-// The same in a liquid (immersed_kernel.h).
+// The same in a liquid, and above its surface (immersed_kernel.h).
 template <Friction FRICTION, bool DAMPED>
 void move_immersed(const Pass &pass, const Block &block, const double *total, Tally &tally);
+template <Friction FRICTION, bool DAMPED>
+void move_lifted(const Pass &pass, const Block &block, const double *total, Tally &tally);
 
 template <Friction FRICTION, bool DAMPED>
 MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const double *total, Tally &tally)
@@ -174,7 +176,8 @@ MDANIM_ALWAYS_INLINE void move(const Pass &pass, const Block &block, const doubl
   }
   if constexpr (FRICTION != Friction::NONE) {
     if (__builtin_expect(block.immersed >= 0, 0)) {
-      move_immersed<FRICTION, DAMPED>(pass, block, total, tally);
+      block.only_lifted ? move_lifted<FRICTION, DAMPED>(pass, block, total, tally)
+                        : move_immersed<FRICTION, DAMPED>(pass, block, total, tally);
       return;
     }
   }
