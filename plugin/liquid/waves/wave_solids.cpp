@@ -168,10 +168,11 @@ void WaveSolids::place_displaced(const std::vector<Displaced> &displaced)
     const auto offer = [&](int x, int y, bool at_height) {
       if (x < 0 || x >= columns.nx || y < 0 || y >= columns.ny) return;
       const int column = y * columns.nx + x;
+      const long lowest = (1 + y) * columns.stride + x;
       for (int n = 0; n < columns.spans_in[column] && left > 0; ++n) {
-        const long i = columns.place(column, n);
-        if (at_height && (span[i].low > from.z || span[i].high <= from.z)) continue;
-        const Units taken = std::clamp<Units>(span[i].capacity - content[i], 0, left);
+        const long i = n == 0 ? lowest : columns.place(column, n);
+        if (content[i] >= span[i].capacity || (at_height && (span[i].low > from.z || span[i].high <= from.z))) continue;
+        const Units taken = std::min(span[i].capacity - content[i], left);
         content[i] += taken;
         left -= taken;
         run.counts.displaced += taken;
