@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The guard tells rigid objects that lie on each other from those that are in each other, whatever the boxes around them say."""
 
+from unittest.mock import Mock
+
 import numpy as np
 import pytest
 import rigid_meshes
 from mdanim_lammps import Trajectory
 from mdanim_lammps.engine.geometry import Geometry
+from mdanim_lammps.engine.hosts import Hosts
 from mdanim_lammps.model import mesh
 from mdanim_lammps.run.loop import simulate
 from mdanim_lammps.scene.scene import Mesh
@@ -61,9 +64,9 @@ def test_what_touches_a_round_side_is_not_in_it(prepared, a, b, way, apart, turn
     assert before is None and set(after or ()) == {0, 1}
 
 
-def test_a_board_at_a_ball_of_few_cells_is_not_in_it(prepared):
+def test_a_board_at_a_ball_of_few_cells_is_not_in_it(prepared, monkeypatch):
     """Cells of the ball reach 3.7 cm beyond it in this direction, and the board is 4 cm thick: it rose below a ball that floats,
-    and its run was stopped."""
+    and its run was stopped. Ctrl-C during the look at the surface, which C code asks for, is not lost."""
     way = np.array([1.0, 1.0, 2.0]) / 6**0.5
     at = (0.172 * way).tolist()
     text = f"""object ball {{ shape sphere 15 cm  density 60  elasticity 50 kPa  position (0, 0, 0) m }}
@@ -78,6 +81,9 @@ def test_a_board_at_a_ball_of_few_cells_is_not_in_it(prepared):
         x[system.first[1] :] = system.position[system.first[1] :] - sunk * way
         found.append(geometry.sunk(x))
     assert found == [None, None, (1, 0)]
+    monkeypatch.setattr(Hosts, "holds_centre", Mock(side_effect=KeyboardInterrupt))
+    with pytest.raises(KeyboardInterrupt):
+        geometry.sunk(x)
 
 
 def test_wedges_on_each_other(prepared, wedge):

@@ -92,12 +92,12 @@ class Geometry:
         library, model, _ = self._own
         count, which = self._which(solids)
         pair = np.zeros(2, np.int32)
-        faults: list[Exception] = []
+        faults: list[BaseException] = []
 
         def is_below(guest: int, host: int) -> int:
             try:
                 return int(self._hosts.holds_centre(x, guest, host))
-            except Exception as fault:  # none passes through C
+            except BaseException as fault:  # none passes through C, nor Ctrl-C
                 faults.append(fault)
                 return 0
 

@@ -65,10 +65,13 @@ class HeldBody(BodyKind):
 def _is_plate(scene, solid) -> bool:
     """Whether an object is thin along one axis beside something elastic with an inside, as a shelf, a disc or a bowl, and nothing
     reads particles in it."""
-    if not (only_surfaces_act(scene) and _has_elastic(scene)):
-        return False
-    low, high = shapes.extent(solid.shape)
-    return sorted(high - low)[1] >= PLATE * shapes.thickness(solid.shape)
+    return only_surfaces_act(scene) and _has_elastic(scene) and is_flat(solid.shape)
+
+
+def is_flat(shape: shapes.Shape) -> bool:
+    """Whether a shape is thin along one axis of the box around it, and wide along both others."""
+    low, high = shapes.extent(shape)
+    return sorted(high - low)[1] >= PLATE * shapes.thickness(shape)
 
 
 @once_for(lambda scene: scene)

@@ -9,7 +9,7 @@ from ...effects.envelope import Envelope
 from ...effects.margin import Margin
 from ...model import shapes
 from ...scene.formatting import at_most, say
-from .body import COARSEST, PLATE
+from .body import COARSEST, PLATE, is_flat
 from .words import ContactModel
 
 END = 1.0
@@ -19,10 +19,9 @@ END = 1.0
 def widest_cells(shape: shapes.Shape) -> float:
     """Cells [m] that an end or an edge of a held shape holds; infinite where the shape is not slender."""
     thin, (low, high) = shapes.thickness(shape), shapes.extent(shape)
-    _, second, longest = sorted(high - low)
-    if longest < PLATE * thin:
+    if (high - low).max() < PLATE * thin:
         return np.inf
-    return thin * (COARSEST if second >= PLATE * thin else END)
+    return thin * (COARSEST if is_flat(shape) else END)
 
 
 def narrow(envelope: Envelope) -> list[Margin]:
