@@ -25,6 +25,7 @@ struct Block {
   bool held_back;    // other forces are added before it may move
   bool damped;       // some of its particles have dashpots
   bool bound;        // some have springs
+  bool overlaps;     // most of its entries push some particles that the entry before pushes, too
   unsigned end;
   unsigned rates;        // first of its strip's rows of Pass::rate, if it is damped
   int external_force;    // first of its rows of Pass::external_force; negative for none

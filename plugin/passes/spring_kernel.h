@@ -80,9 +80,24 @@ MDANIM_ALWAYS_INLINE Vector3 force_of(const double *coeffs, const Lanes<DAMPED> 
   return factor * d;
 }
 
+// Whether offsets of three entries, of `left`, differ by one: they push the same particles, one lane aside.
+MDANIM_ALWAYS_INLINE bool are_three(const Entry *entry, long left)
+{ return left >= 3 && entry[1].offset == entry[0].offset - 1 && entry[2].offset == entry[0].offset - 2; }
+
+// Takes what three such entries push from f, in their order, `along` from the places from j on: each place is loaded and stored
+// once.
+MDANIM_ALWAYS_INLINE void push_three(double *f, long j, const Vector &up, const Vector &along, const Vector &down)
+{
+  const Vector low = ((load(f + j - 1) - from_last_two(Vector{}, up)) - from_last(Vector{}, along)) - down;
+  const Two high = (load<Two>(f + j - 1 + LANES) - last_two(up)) - last_and_first(along, Vector{});
+  store(f + j - 1, low);
+  store(f + j - 1 + LANES, high);
+}
+
 // Evaluates the springs of a block, each once, and the dashpots beside them: forces on its own particles go into `felt`, those on
-// their partners into f. place(array, i) gives the lanes of particles from i on.
-template <bool DAMPED, class Place>
+// their partners into f. place(array, i) gives the lanes of particles from i on. THREES: three entries whose offsets differ by
+// one are taken together.
+template <bool DAMPED, bool THREES = false, class Place>
 MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsigned &e, unsigned end, unsigned rates, int i,
                                       double *const *of_f, Felt &felt, const Place &place)
 {
@@ -93,8 +108,22 @@ MDANIM_ALWAYS_INLINE void add_springs(const Pass &pass, const Entry *entry, unsi
   const auto here = Lanes<DAMPED>::at(x, v, i, place);
   for (; e < end; ++e, rate += LANES) {
     const int j = i + entry[e].offset;
-    const double *const own = coeffs + static_cast<unsigned long>(entry[e].law) * (COEFFS<DAMPED> * LANES);
-    const Vector3 force = force_of<DAMPED>(own, here, Lanes<DAMPED>::at(x, v, j, place), dt, rate, felt.taken);
+    const auto force_from = [&](unsigned n, int at) __attribute__((always_inline)) {
+      const double *const own = coeffs + static_cast<unsigned long>(entry[n].law) * (COEFFS<DAMPED> * LANES);
+      return force_of<DAMPED>(own, here, Lanes<DAMPED>::at(x, v, at, place), dt, rate, felt.taken);
+    };
+    if constexpr (THREES) {
+      if (are_three(entry + e, end - e)) {
+        const Vector3 up = force_from(e, j), along = force_from(e + 1, j - 1), down = force_from(e + 2, j - 2);
+        felt.force = ((felt.force + up) + along) + down;
+        push_three(f[0], j - 1, up.x, along.x, down.x);
+        push_three(f[1], j - 1, up.y, along.y, down.y);
+        push_three(f[2], j - 1, up.z, along.z, down.z);
+        e += 2;
+        continue;
+      }
+    }
+    const Vector3 force = force_from(e, j);
     felt.force += force;
     store(f, j, load(f, j) - force);
   }
@@ -105,10 +134,6 @@ MDANIM_ALWAYS_INLINE Vector3 from_last(const Vector3 &a, const Vector3 &b)
 
 MDANIM_ALWAYS_INLINE Vector3 from_second(const Vector3 &a, const Vector3 &b)
 { return {from_second(a.x, b.x), from_second(a.y, b.y), from_second(a.z, b.z)}; }
-
-// Whether offsets of three entries, of `left`, differ by one: they push the same particles, one lane aside.
-MDANIM_ALWAYS_INLINE bool are_three(const Entry *entry, long left)
-{ return left >= 3 && entry[1].offset == entry[0].offset - 1 && entry[2].offset == entry[0].offset - 2; }
 
 // Whether what two entries push overlaps neither in one block nor from it to the next.
 MDANIM_ALWAYS_INLINE bool are_apart(const Entry &longer, const Entry &shorter)
@@ -225,9 +250,13 @@ template <bool DAMPED> MDANIM_ALWAYS_INLINE void add_up(const Pass &pass, const 
 
 template <bool DAMPED> MDANIM_ALWAYS_INLINE void feel(const Pass &pass, const Block &block, unsigned &e, double *total)
 {
+  constexpr bool THREES = !DAMPED && LANES > 4;    // else it does not pay (docs/decisions/one-pass.md)
   Felt felt{};
   const auto place = [](double *const *from, int i) { return load(from, i); };
-  add_springs<DAMPED>(pass, pass.entry, e, block.end, block.rates, block.start, pass.range->f, felt, place);
+  if (THREES && block.overlaps)
+    add_springs<DAMPED, THREES>(pass, pass.entry, e, block.end, block.rates, block.start, pass.range->f, felt, place);
+  else
+    add_springs<DAMPED>(pass, pass.entry, e, block.end, block.rates, block.start, pass.range->f, felt, place);
   add_up<DAMPED>(pass, block, felt, total);
 }
 

@@ -23,10 +23,16 @@ void set_strips(std::vector<Block> &block, const std::vector<Entry> &entry, int 
            !begins_range(n) && own.end > first_entry(n) &&
            std::equal(entries + first_entry(n), entries + own.end, entries + first_entry(n - 1), entries + before.end, equal);
   };
+  const auto overlaps = [&](std::size_t n) {
+    unsigned overlapping = 0;
+    for (unsigned e = first_entry(n) + 1; e < block[n].end; ++e) overlapping += entry[e - 1].offset - entry[e].offset < lanes;
+    return 3 * overlapping >= 2 * (block[n].end - first_entry(n));    // docs/decisions/one-pass.md
+  };
   for (std::size_t n = 0; n < block.size();) {
     std::size_t end = n + 1;
     while (end < block.size() && end - n < LONGEST_STRIP && follows(end)) ++end;
     if (end - n < SHORTEST) end = n + 1;
+    block[n].overlaps = end == n + 1 && overlaps(n);
     for (std::size_t k = n; k < end; ++k) block[k].strip = k == n ? static_cast<short>(end - n) : 0;
     n = end;
   }

@@ -10,7 +10,8 @@
 
 namespace mdanim {
 
-// Sets the strips of blocks: neighbours without gaps, in one range and away from its borders, with entries of the same offsets.
+// Sets the strips of blocks: neighbours without gaps, in one range and away from its borders, with entries of the same offsets;
+// and whether entries of a block alone overlap.
 void set_strips(std::vector<Block> &block, const std::vector<Entry> &entry, int lanes, const RangeCut &ranges);
 
 }    // namespace mdanim

@@ -8,6 +8,7 @@
 namespace mdanim {
 namespace {
 
+typedef double Two __attribute__((vector_size(16)));
 typedef double Four __attribute__((vector_size(32)));
 
 // Bit n tells whether a comparison is true in lane n.
@@ -31,7 +32,6 @@ template <class Number, class Vector> MDANIM_ALWAYS_INLINE void store(Number *to
 {
 #if !defined(__AVX__) && (defined(__clang__) || __GNUC__ >= 12)
   if constexpr (sizeof(Vector) == 32 && sizeof(Number) == 8) {    // GCC puts a vector that has no register into memory twice
-    typedef double Two __attribute__((vector_size(16)));
     reinterpret_cast<Unaligned<Two> *>(to)->value = __builtin_shufflevector(value, value, 0, 1);
     reinterpret_cast<Unaligned<Two> *>(to + 2)->value = __builtin_shufflevector(value, value, 2, 3);
     return;
@@ -50,7 +50,7 @@ template <int BYTES> struct ShuffledLanes {
 #define MDANIM_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, typename ShuffledLanes<sizeof(a)>::Of{__VA_ARGS__})
 #endif
 
-// Lanes of two vectors that follow each other, from the last lane of the first on; and from its second one on.
+// Lanes of two vectors that follow each other, from the last lane of the first on; from its second one; from its last but one.
 template <class Vector> MDANIM_ALWAYS_INLINE Vector from_last(const Vector &a, const Vector &b)
 {
   if constexpr (sizeof(Vector) == 64)
@@ -64,6 +64,34 @@ template <class Vector> MDANIM_ALWAYS_INLINE Vector from_second(const Vector &a,
     return MDANIM_SHUFFLE(a, b, 1, 2, 3, 4, 5, 6, 7, 8);
   else
     return MDANIM_SHUFFLE(a, b, 1, 2, 3, 4);
+}
+
+template <class Vector> MDANIM_ALWAYS_INLINE Vector from_last_two(const Vector &a, const Vector &b)
+{
+  if constexpr (sizeof(Vector) == 64)
+    return MDANIM_SHUFFLE(a, b, 6, 7, 8, 9, 10, 11, 12, 13);
+  else
+    return MDANIM_SHUFFLE(a, b, 2, 3, 4, 5);
+}
+
+// The last lane of a vector and the first one of another; and the last two lanes of one.
+template <class Vector> MDANIM_ALWAYS_INLINE Two last_and_first(const Vector &a, const Vector &b)
+{
+  constexpr int LAST = sizeof(Vector) / sizeof(double) - 1;
+#if defined(__clang__) || __GNUC__ >= 12
+  return __builtin_shufflevector(a, b, LAST, LAST + 1);
+#else
+  return Two{a[LAST], b[0]};
+#endif
+}
+template <class Vector> MDANIM_ALWAYS_INLINE Two last_two(const Vector &a)
+{
+  constexpr int LAST = sizeof(Vector) / sizeof(double) - 1;
+#if defined(__clang__) || __GNUC__ >= 12
+  return __builtin_shufflevector(a, a, LAST - 1, LAST);
+#else
+  return Two{a[LAST - 1], a[LAST]};
+#endif
 }
 
 // Exchanges rows and columns.
