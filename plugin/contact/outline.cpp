@@ -61,7 +61,7 @@ void Outline::fit(const PaddedVec3 *place)
 void Outline::follow(const Vec3 &way, double stir, const PaddedVec3 *place)
 {
   if (all.empty()) return;
-  middle += way, stirred += stir, beside += stir;
+  middle += way, stirred += stir, beside += MORE * stir;
   if (!(stirred <= renewed)) fit(place);
 }
 

@@ -5,6 +5,7 @@
 
 #include "liquid/waves/wave_columns.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace mdanim {

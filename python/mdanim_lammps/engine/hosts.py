@@ -150,6 +150,8 @@ class Hosts:
         middle = place.mean(axis=1)
         near = Nearest(middle)(points)[1]
         of = np.stack([place[near][:, ends].mean(axis=1) for ends in UPPER], axis=1) - middle[near][:, None]
+        solid = np.linalg.det(of) != 0.0  # a flat cell has no inside
+        near, of, points = near[solid], of[solid], points[solid]
         within = np.linalg.solve(np.swapaxes(of, 1, 2), (points - middle[near])[..., None])[..., 0] / 2.0
         inside = (np.abs(within) <= IN_CELL).all(axis=1)
         number = np.argwhere(body.cells.filled)[near[inside], ::-1]
