@@ -59,3 +59,15 @@ def test_a_peg_that_goes_through_a_ball_is_told_before_and_in_the_run(tmp_path):
         scene.run(tmp_path / "out", movie=False, progress=False)
     wide = shelf("cylinder 3 cm 20 cm", -0.1, own="resolution 5 cm").prepared.certificate.margins
     assert not [m for m in wide if m.name == "narrow part"]
+
+
+def test_a_tip_that_goes_through_a_ball_is_told_before_and_in_the_run(tmp_path):
+    """No cells make it hold: the way out is a blunter one, here of 6 cm, on which the ball above stays."""
+    scene = shelf("cone 4 cm 20 cm", -0.15, at=0.1005, m=1, v=2, own="resolution 5 cm")
+    (told,) = (m for m in scene.prepared.certificate.margins if m.name == "slim tip")
+    assert told.severity == "warning" and told.object == "shelf" and told.value == pytest.approx(5.0)
+    assert "write a radius of 6 cm or more" in told.hint
+    with pytest.raises(DivergedError, match=r"shelf: it is inside ball(.|\n)*cause: shelf is 5 times as high as its radius"):
+        scene.run(tmp_path / "out", movie=False, progress=False)
+    (blunt,) = (m for m in shelf("cone 7 cm 20 cm", -0.15).prepared.certificate.margins if m.name == "slim tip")
+    assert blunt.severity == "ok"

@@ -92,7 +92,7 @@ class Guard:
             self.folds[m] = when, where, max(most, int(seen.folded[n]))
         if seen.sunk:
             m, other = seen.sunk
-            limits = ("narrow part", "closing speed", "time step", "amplitude", "thinnest part")
+            limits = ("narrow part", "slim tip", "closing speed", "time step", "amplitude", "thinnest part")
             raise self.error_at(step, f"it is inside {system.names[other]}", m, *limits)
 
     def _look_at_cells(self, step: int, cells: np.ndarray) -> None:

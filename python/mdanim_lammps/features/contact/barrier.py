@@ -18,7 +18,7 @@ from ...model.model import Layer
 from ...reach import by, thrower_of
 from ...scene.formatting import at_least, say
 from .forms import Form, particle_stiffness, stiffness_told
-from .narrow import narrow
+from .narrow import narrow, slim_tips
 from .pairs import largest_of_partners
 from .planes import OR_ON_SURFACES, STIFFNESS, others
 from .touching import REACH, THIN, WAY_NAMES, touching
@@ -129,7 +129,8 @@ class ObjectContact(Form):
         return REACH * context.system.spacing
 
     def margins(self, envelope):
-        return [*envelope.own_step("contact", envelope.rates[self.name]), *self._closing_speed(envelope), *narrow(envelope)]
+        slender = [*narrow(envelope), *slim_tips(envelope)]
+        return [*envelope.own_step("contact", envelope.rates[self.name]), *self._closing_speed(envelope), *slender]
 
     def tunnelling(self, envelope: Envelope) -> np.ndarray:
         """Closing speed over the wave speed from which each solid is passed through, shape (M,)."""

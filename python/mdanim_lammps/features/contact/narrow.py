@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""Held things that are narrower than what meets them is resolved for: what ``check`` tells of them."""
+"""Held things that are narrower than what meets them is resolved for, and slim tips: what ``check`` tells of them."""
 
 from __future__ import annotations
 
@@ -8,12 +8,17 @@ import numpy as np
 from ...effects.envelope import Envelope
 from ...effects.margin import Margin
 from ...model import shapes
-from ...scene.formatting import at_most, say
+from ...scene.formatting import at_least, at_most, number, say
+from ...scene.scene import Cone
 from .body import COARSEST, PLATE, is_flat
 from .words import ContactModel
 
 END = 1.0
 """Cells over the thickness of a rod that its end holds at a thirtieth of the wave speed; the edge of a plate holds COARSEST."""
+
+SLIMMEST = 10.0 / 3.0
+"""Height over radius of a cone whose tip holds a ball at a thirtieth of the wave speed, whatever its cells
+(docs/physics-contact.md, "Narrow things")."""
 
 
 def widest_cells(shape: shapes.Shape) -> float:
@@ -58,5 +63,38 @@ def narrow(envelope: Envelope) -> list[Margin]:
             "warning" if used > 1.05 else "ok",
             hint=f"write resolution {say(at_most(float(holds[n])), 'm')} in {system.names[m]}, or a thicker {system.names[n]}, "
             "unless they meet at a broad side of it",
+        )
+    ]
+
+
+def slim_tips(envelope: Envelope) -> list[Margin]:
+    """The slimmest held cone that something that deforms may meet: one point of a tip acts along its axis."""
+    scene, system = envelope.scene, envelope.system
+    if scene.control.contact_model is not ContactModel.SURFACE:
+        return []
+    soft = np.flatnonzero(~(system.rigid | system.held_whole | system.bare))
+    worst: tuple[float, int, int] | None = None
+    for n in np.flatnonzero(system.held_whole).tolist():
+        if not isinstance(cone := scene.solids[n].shape, Cone):
+            continue
+        met = soft[envelope.reach.region.may_touch(soft, np.full(len(soft), n))]
+        if len(met) and (worst is None or cone.height / cone.radius > worst[0]):
+            worst = cone.height / cone.radius, int(met[0]), n
+    if worst is None:
+        return []
+    slim, m, n = worst
+    wide = say(at_least(slim * scene.solids[n].shape.radius / SLIMMEST), "m")
+    return [
+        Margin(
+            "slim tip",
+            system.names[n],
+            slim,
+            SLIMMEST,
+            "",
+            f"{system.names[n]} is {number(slim)} times as high as its radius; {system.names[m]} may fall on its tip, which may "
+            f"go through it beyond {number(SLIMMEST)} times",
+            envelope.place(n, "shape"),
+            "warning" if slim > SLIMMEST else "ok",
+            hint=f"write a radius of {wide} or more, unless they meet at its side",
         )
     ]

@@ -69,6 +69,7 @@ MARGINS = {
     "wall": "the time step that ground, walls and basin alone would bear",
     "closing speed": "how fast objects may meet so that nothing passes through; softer or thinner objects bear less",
     "narrow part": "cells of what meets a held rod or plate, whose end or edge goes through wider ones (an estimate)",
+    "slim tip": "height over radius of a held cone, whose tip goes through what falls on it beyond 3.3 (an estimate)",
 }
 
 
