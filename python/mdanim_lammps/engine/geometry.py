@@ -110,7 +110,7 @@ class Geometry:
 
     @cached_property
     def _hosts(self) -> Hosts:
-        return Hosts(self.system, {(int(i), int(j)) for i, j in self.passing})
+        return Hosts(self.system, {(int(i), int(j)) for i, j in self.passing}, self.first_cell)
 
     @cached_property
     def first_cell(self) -> np.ndarray:

@@ -34,12 +34,11 @@ UPPER = [[1, 2, 5, 6], [2, 3, 6, 7], [4, 5, 6, 7]]
 class Hosts:
     """The objects of a system without cells, by their shapes."""
 
-    def __init__(self, system: System, passing: Container[tuple[int, int]]):
-        self.system, self.passing = system, passing
+    def __init__(self, system: System, passing: Container[tuple[int, int]], first_cell: np.ndarray):
+        self.system, self.passing, self.first_cell = system, passing, first_cell
         self.whole = system.rigid | system.held_whole
-        cells = np.bincount(system.object[system.hexahedron[:, 0]], minlength=len(system.names))
         boxed = np.array([frame.corners is not None for frame in system.frames])[system.contact_kind]
-        self.numbers = np.flatnonzero(self.whole & boxed & (cells == 0))
+        self.numbers = np.flatnonzero(self.whole & boxed & (np.diff(first_cell) == 0))
         """Which they are, ascending."""
         self.firm, self.soft = np.flatnonzero(self.whole & boxed), np.flatnonzero(~self.whole & ~system.bare)
         """Solids that are corners of a box, and those that deform and fill a volume, ascending."""
@@ -65,56 +64,67 @@ class Hosts:
         drawn = np.concatenate([system.frames[kind].drawn for kind in system.contact_kind.tolist()])
         return system.boundary & drawn & ~self.whole[system.object]
 
-    @cached_property
-    def first_cell(self) -> np.ndarray:
-        """First cell of each solid, and the number of all at the end, shape (M + 1,)."""
-        owner = self.system.object[self.system.hexahedron[:, 0]]
-        return np.searchsorted(owner, np.arange(len(self.system.names) + 1))
-
     def sunk(self, x: np.ndarray, solids: np.ndarray | None = None) -> tuple[int, int] | None:
         """Two solids of which the first is in the second, as `Geometry.sunk`: a guest in a host, or what does not deform in what
         does. Of a guest that deforms a point of its surface is deeper than a cell, of others the centre is below the surface; of
         what does not deform a point of its surface is deeper than a cell in the other body as that was at the start."""
-        for host, guest in self._meeting(x, self.numbers, self.guests, solids):
-            if self._is_in(x, guest, host):
-                return guest, host
-        for firm, soft in self._meeting(x, self.firm, self.soft, solids):
-            if self._is_pierced(x, firm, soft):
-                return firm, soft
+        if not len(self.numbers) and not (len(self.firm) and len(self.soft)):
+            return None
+        boxes, all_guests = self.system.bounds(x), self.guests if len(self.numbers) else self.numbers
+        for host, guests in self._meeting(boxes, self.numbers, all_guests, solids):
+            for guest in guests:
+                if self._is_in(x, guest, host):
+                    return guest, host
+        for firm, soft in self._meeting(boxes, self.firm, self.soft, solids, AT_SURFACE * np.cbrt(self.system.cell_volume)):
+            points = self._points_of(x, firm)
+            for m in soft:
+                if self._is_pierced(x, points, m):
+                    return firm, m
         return None
 
     def holds_centre(self, x: np.ndarray, guest: int, host: int) -> bool:
         """Whether the centre of mass of one solid is in another one that has cells, deeper than contact lets it: the cells of a
         round body reach beyond its surface, by more than the thickness of a board."""
-        system = self.system
-        of_guest = slice(system.first[guest], system.first[guest + 1])
-        centre = system.mass[of_guest] @ x[of_guest] / system.mass[of_guest].sum()
-        if system.frames[system.contact_kind[host]].corners is None:
-            return self._below(x, host, centre[None], 0.0 if self.whole[host] else YIELDS)
-        return bool(self._depth(host, self._through_box(x, host, centre[None]))[0] > 0.0)
+        centre = self._centre(x, guest)
+        if self.system.frames[self.system.contact_kind[host]].corners is None:
+            return self._below(x, host, centre, 0.0 if self.whole[host] else YIELDS)
+        return bool(self._depth(host, self._through_box(x, host, centre))[0] > 0.0)
+
+    def _centre(self, x: np.ndarray, m: int) -> np.ndarray:
+        """Centre of mass of a solid [m], shape (1, 3)."""
+        own = slice(self.system.first[m], self.system.first[m + 1])
+        mass = self.system.mass[own]
+        return (mass @ x[own] / mass.sum())[None]
 
     def _meeting(
-        self, x: np.ndarray, hosts: np.ndarray, guests: np.ndarray, solids: np.ndarray | None
-    ) -> Iterator[tuple[int, int]]:
-        """Hosts, and guests whose boxes overlap with theirs, that must not be in each other."""
+        self,
+        boxes: tuple[np.ndarray, np.ndarray],
+        hosts: np.ndarray,
+        guests: np.ndarray,
+        solids: np.ndarray | None,
+        inset: np.ndarray | float = 0.0,
+    ) -> Iterator[tuple[int, list[int]]]:
+        """Each host, and the guests that must not be in it whose boxes, smaller by their ``inset`` [m] at each side, overlap with
+        its own; some at least."""
         if solids is not None:
             hosts, guests = np.intersect1d(hosts, solids), np.intersect1d(guests, solids)
         if not len(hosts) or not len(guests):
             return
-        low, high = self.system.bounds(x)
+        low, high = boxes
+        inset = np.broadcast_to(inset, len(low))[guests, None]
+        lower, upper = low[guests] + inset, high[guests] - inset
+        still = self.system.still
         for m in hosts.tolist():
-            near = guests[((low[guests] < high[m]) & (high[guests] > low[m])).all(axis=1)]
-            for n in near.tolist():
-                both_still = self.system.still[m] and self.system.still[n]
-                if n != m and not both_still and (min(m, n), max(m, n)) not in self.passing:
-                    yield m, n
+            near = guests[((lower < high[m]) & (upper > low[m])).all(axis=1)].tolist()
+            met = [n for n in near if n != m and not (still[m] and still[n]) and (min(m, n), max(m, n)) not in self.passing]
+            if met:
+                yield m, met
 
     def _is_in(self, x: np.ndarray, guest: int, host: int) -> bool:
         system = self.system
         of_guest, of_host = (slice(system.first[m], system.first[m + 1]) for m in (guest, host))
         if self.whole[guest]:
-            mass, depth = system.mass[of_guest], 0.0
-            points = (mass @ x[of_guest] / mass.sum())[None]
+            points, depth = self._centre(x, guest), 0.0
         else:
             points, depth = x[of_guest][self.surface[of_guest]], float(np.cbrt(system.cell_volume[guest]))
         corner, frame = x[of_host], system.frames[system.contact_kind[host]]
@@ -123,25 +133,27 @@ class Hosts:
             return False
         points = self._through_box(x, host, points)
         if isinstance(frame.shape, Mesh):  # few are in it, and only these are asked for exactly
-            surface = self._surface(frame.shape)
-            points = points[mesh.quick_depth(surface)(points) > depth]
-            return bool(len(points)) and bool((mesh.depth(surface, points) > depth).any())
-        return bool((shapes.depth(frame.shape, points) > depth).any())
+            points = points[mesh.quick_depth(self._surface(frame.shape))(points) > depth]
+        return bool(len(points)) and bool((self._depth(host, points) > depth).any())
 
-    def _is_pierced(self, x: np.ndarray, firm: int, soft: int) -> bool:
-        system = self.system
-        corner, h = x[system.first[firm] :][BOX], float(np.cbrt(system.cell_volume[soft]))
-        frame, own = system.frames[system.contact_kind[firm]], _own_box(system.frames[system.contact_kind[firm]])
+    def _points_of(self, x: np.ndarray, firm: int) -> np.ndarray:
+        """Points of the surface of a solid that is corners of a box [m], shape (K, 3), ascending along x; none of one that only
+        its features touch."""
+        corner, frame = x[self.system.first[firm] :][BOX], self.system.frames[self.system.contact_kind[firm]]
         if isinstance(frame.shape, Mesh | PieceShape) and frame.cells.filled.size == 1:
-            return False  # only its features touch
-        at = frame.cells.low + frame.contact.at * frame.cells.edge
+            return np.zeros((0, 3))
+        own, at = _own_box(frame), frame.cells.low + frame.contact.at * frame.cells.edge
         points = corner[0] + (at - own[0]) @ np.linalg.solve(own[1:] - own[0], corner[1:] - corner[0])
-        around = x[system.first[soft] : system.first[soft + 1]]
-        low, high = around.min(axis=0) + AT_SURFACE * h, around.max(axis=0) - AT_SURFACE * h
+        return points[np.argsort(points[:, 0])]
+
+    def _is_pierced(self, x: np.ndarray, points: np.ndarray, soft: int) -> bool:
+        """Whether one of some points [m], shape (K, 3), ascending along x, is deeper than a cell in a solid that deforms."""
+        system = self.system
+        around, margin = x[system.first[soft] : system.first[soft + 1]], AT_SURFACE * float(np.cbrt(system.cell_volume[soft]))
+        low, high = around.min(axis=0) + margin, around.max(axis=0) - margin
+        points = points[slice(*np.searchsorted(points[:, 0], (low[0], high[0])))]
         points = points[((points > low) & (points < high)).all(axis=1)]
-        if not len(points):
-            return False
-        return self._below(x, soft, points, 1.0)
+        return bool(len(points)) and self._below(x, soft, points, 1.0)
 
     def _below(self, x: np.ndarray, m: int, points: np.ndarray, deep: float) -> bool:
         """Whether one of some points [m], shape (K, 3), is deeper in a solid, as that was at the start, than so many cells."""
