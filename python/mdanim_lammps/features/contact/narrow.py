@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ...effects.envelope import Envelope
@@ -32,19 +34,9 @@ def widest_cells(shape: shapes.Shape) -> float:
 def narrow(envelope: Envelope) -> list[Margin]:
     """The cells of what deforms beside those that a held thing holds that it may meet: where they are wider, few points of either
     meet, and one may go through the other."""
-    scene, system = envelope.scene, envelope.system
-    if scene.control.contact_model is not ContactModel.SURFACE:
-        return []
-    cells = np.where(system.rigid | system.held_whole | system.bare, 0.0, np.cbrt(system.cell_volume))
-    holds = np.full(len(cells), np.inf)
-    holds[system.held_whole] = [widest_cells(scene.solids[m].shape) for m in np.flatnonzero(system.held_whole).tolist()]
-    soft, thin = np.flatnonzero(cells > 0.0), np.flatnonzero(np.isfinite(holds))
-    worst: tuple[float, int, int] | None = None
-    for n in thin.tolist():
-        met = soft[envelope.reach.region.may_touch(soft, np.full(len(soft), n))]
-        if len(met) and (worst is None or cells[met].max() / holds[n] > worst[0]):
-            m = int(met[cells[met].argmax()])
-            worst = float(cells[m] / holds[n]), m, n
+    scene, system, cells = envelope.scene, envelope.system, _cells(envelope)
+    holds = {m: widest_cells(scene.solids[m].shape) for m in np.flatnonzero(system.held_whole).tolist()}
+    worst = _worst(envelope, ((n, cells / wide) for n, wide in holds.items() if np.isfinite(wide)))
     if worst is None:
         return []
     used, m, n = worst
@@ -54,14 +46,14 @@ def narrow(envelope: Envelope) -> list[Margin]:
             "narrow part",
             system.names[m],
             float(cells[m]),
-            float(holds[n]),
+            holds[n],
             "m",
             f"{system.names[m]} may meet {system.names[n]} with cells of {say(float(cells[m]), 'm')}; an edge or an end of "
             f"{system.names[n]}, {say(shapes.thickness(scene.solids[n].shape), 'm')} thick, holds cells of "
-            f"{say(float(holds[n]), 'm')}, and may go through wider ones",
+            f"{say(holds[n], 'm')}, and may go through wider ones",
             envelope.place(m, "resolution", "shape") if own else scene.control.spans.get("resolution"),
             "warning" if used > 1.05 else "ok",
-            hint=f"write resolution {say(at_most(float(holds[n])), 'm')} in {system.names[m]}, or a thicker {system.names[n]}, "
+            hint=f"write resolution {say(at_most(holds[n]), 'm')} in {system.names[m]}, or a thicker {system.names[n]}, "
             "unless they meet at a broad side of it",
         )
     ]
@@ -69,17 +61,9 @@ def narrow(envelope: Envelope) -> list[Margin]:
 
 def slim_tips(envelope: Envelope) -> list[Margin]:
     """The slimmest held cone that something that deforms may meet: one point of a tip acts along its axis."""
-    scene, system = envelope.scene, envelope.system
-    if scene.control.contact_model is not ContactModel.SURFACE:
-        return []
-    soft = np.flatnonzero(~(system.rigid | system.held_whole | system.bare))
-    worst: tuple[float, int, int] | None = None
-    for n in np.flatnonzero(system.held_whole).tolist():
-        if not isinstance(cone := scene.solids[n].shape, Cone):
-            continue
-        met = soft[envelope.reach.region.may_touch(soft, np.full(len(soft), n))]
-        if len(met) and (worst is None or cone.height / cone.radius > worst[0]):
-            worst = cone.height / cone.radius, int(met[0]), n
+    scene, system, soft = envelope.scene, envelope.system, _cells(envelope) > 0.0
+    shapes_of = {n: scene.solids[n].shape for n in np.flatnonzero(system.held_whole).tolist()}
+    worst = _worst(envelope, ((n, soft * (s.height / s.radius)) for n, s in shapes_of.items() if isinstance(s, Cone)))
     if worst is None:
         return []
     slim, m, n = worst
@@ -98,3 +82,22 @@ def slim_tips(envelope: Envelope) -> list[Margin]:
             hint=f"write a radius of {wide} or more, unless they meet at its side",
         )
     ]
+
+
+def _cells(envelope: Envelope) -> np.ndarray:
+    """Width of the cells of each solid that deforms and touches by its surface [m], 0 for others, shape (M,)."""
+    system, by_surface = envelope.system, envelope.scene.control.contact_model is ContactModel.SURFACE
+    return np.where(system.rigid | system.held_whole | system.bare | (not by_surface), 0.0, np.cbrt(system.cell_volume))
+
+
+def _worst(envelope: Envelope, parts: Iterable[tuple[int, np.ndarray]]) -> tuple[float, int, int] | None:
+    """The largest number, what deforms and what it may meet; ``parts`` are held solids, each with a number for every solid, shape
+    (M,), 0 for those that do not count. None where nothing meets."""
+    worst: tuple[float, int, int] | None = None
+    for n, numbers in parts:
+        soft = np.flatnonzero(numbers > 0.0)
+        met = soft[envelope.reach.region.may_touch(soft, np.full(len(soft), n))]
+        if len(met) and (worst is None or numbers[met].max() > worst[0]):
+            m = int(met[numbers[met].argmax()])
+            worst = float(numbers[m]), m, n
+    return worst
